@@ -20,4 +20,4 @@ def short_case() -> Case:
 
 @pytest.fixture(scope="session")
 def short_law(short_case: Case) -> ContactLaw:
-    return contact_law(short_case, 1e-3 * np.linspace(-1.5, 1.5, 5), 1e-6 * np.geomspace(1.0, 3.0, 5), accuracy=0.05)
+    return contact_law(short_case, 1e-3 * np.linspace(-1.5, 1.5, 5), 1e-6 * np.geomspace(1.0, 3.0, 5), accuracy=0.1)

@@ -7,6 +7,7 @@ import pytest
 from benchmarks.stiffness import iso_stiffness, palmgren_stiffness, solved_stiffness
 
 
+@pytest.mark.slow
 def test_stiffness_depends_on_reference_depth() -> None:
     shallow, deep = solved_stiffness((18e-3, 6e-3)), solved_stiffness((18e-3, 12e-3))
     assert shallow == pytest.approx(536, abs=1)

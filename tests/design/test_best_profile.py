@@ -14,13 +14,13 @@ def test_best_crown_is_below_a_scan() -> None:
     case = Case(
         body=HalfSpace(material=Material(210e9, 0.3)), roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9
     )
-    result = best_profile(case, profiles.Lundberg, bounds={"amplitude": (0.05e-6, 1e-6)}, accuracy=0.02, evaluations=20)
+    result = best_profile(case, profiles.Lundberg, bounds={"amplitude": (0.05e-6, 1e-6)}, accuracy=0.05, evaluations=20)
     assert result.measure.attrs["units"] == "Pa"
     assert result.parameter_units.item() == "m"
 
     def peak(amplitude: float) -> float:
         roller = replace(case.roller, profile=profiles.Lundberg(amplitude))
-        return float(solve(replace(case, roller=roller), stresses=False, accuracy=0.02).peak_pressure)
+        return float(solve(replace(case, roller=roller), stresses=False, accuracy=0.05).peak_pressure)
 
     best_measure, margin = float(result.measure), 2 * float(result.measure_error)
     low, high = float(result.flat_from[0]), float(result.flat_to[0])

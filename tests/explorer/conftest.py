@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ import pytest
 from contactstudy.study import run_study
 from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
+
+needs_panel = pytest.mark.skipif(find_spec("panel") is None, reason="the extra `explore` is not installed")
 
 SWEEP = {
     "max_pressure": [1.0e9, 1.25e9, 1.5e9],

@@ -1,9 +1,7 @@
 """Texts and numbers of the cases on the page."""
 
-import pytest
 import xarray as xr
 
-pytest.importorskip("panel")
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 
 

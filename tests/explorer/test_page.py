@@ -5,12 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 import xarray as xr
-
-pytest.importorskip("panel")
 
 from contactstudy import ContactStudyError, InvalidInputError, open_study
 from contactstudy.analysis import in_plane, measure
@@ -31,11 +30,15 @@ from contactstudy.explorer.cases import (
     to_pixels,
     top_image,
 )
-from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
-from contactstudy.explorer.page import MEASURES, Page, _marked_text
 from contactstudy.study import run_study
+from tests.explorer.conftest import needs_panel
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
+
+if TYPE_CHECKING:
+    from contactstudy.explorer.page import Page
+
+pytestmark = needs_panel
 
 SOURCES: dict[str, Callable[[Path], Cases]] = {
     "files": open_cases,
@@ -44,10 +47,17 @@ SOURCES: dict[str, Callable[[Path], Cases]] = {
 }
 
 
+def new_page(cases: Cases) -> Page:
+    """Page of some cases; panel, which takes seconds, is imported by the tests of pages only."""
+    from contactstudy.explorer.page import Page
+
+    return Page(cases)
+
+
 @pytest.fixture
 def page(request: pytest.FixtureRequest, folder: Path) -> Page:
     """Page of the files, or of the source in the test's parameter."""
-    return Page(SOURCES[getattr(request, "param", "files")](folder))
+    return new_page(SOURCES[getattr(request, "param", "files")](folder))
 
 
 any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
@@ -110,10 +120,11 @@ def test_common_axes_of_two_cases(page: Page) -> None:
 
 def test_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
     assert ">12 cases<" in page.view()[0].object
-    assert ">1 case<" in Page(open_cases(case_result)).view()[0].object
+    assert ">1 case<" in new_page(open_cases(case_result)).view()[0].object
     status = page.cases.scalars["status"].astype(object)
     status[0, 0, 0] = "excluded"
-    reduced_page = Page(Cases(page.cases.scalars.assign(status=status.astype(str)), page.cases.load, page.cases.title))
+    scalars = page.cases.scalars.assign(status=status.astype(str))
+    reduced_page = new_page(Cases(scalars, page.cases.load, page.cases.title))
     assert ">11 cases<" in reduced_page.view()[0].object
 
 
@@ -139,14 +150,14 @@ def test_failed_case(page: Page) -> None:
 
 def test_study_without_surfaces(tmp_path: Path) -> None:
     run_study(small_study(level="summary"), tmp_path, workers=0, solver=solve_fake, progress=False)
-    page = Page(open_cases(tmp_path))
+    page = new_page(open_cases(tmp_path))
     assert "stores no surfaces of this case, only its numbers" in page.table.object
     assert [pane.visible for pane in page.panes] == [False, False, False, False, False, True]
 
 
 def test_case_without_stresses(page: Page) -> None:
     without_stresses = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
-    reduced_page = Page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
+    reduced_page = new_page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
     assert "The stresses are not stored." in reduced_page.table.object
     assert [pane.visible for pane in reduced_page.panes] == [True, True, False, False, False, True]
     assert not reduced_page.plane.visible
@@ -172,10 +183,12 @@ def test_numbers_by_subject(page: Page) -> None:
 
 
 def test_error_bars_and_open_marks(page: Page) -> None:
+    from contactstudy.explorer.figures import NEUTRAL_COLOR
+
     scalars = page.cases.scalars
     peak = scalars["peak_pressure"]
     error = (0.1 * peak).where(scalars["max_pressure"] > 1.1e9, np.inf)
-    error_page = Page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
+    error_page = new_page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
     data = error_page.study._line.data
     np.testing.assert_allclose(data["high"][1:], 1.1 * data["v"][1:])
     np.testing.assert_allclose(data["low"][1:], 0.9 * data["v"][1:])
@@ -212,6 +225,8 @@ def test_planes_equal_analysis_cuts(folder: Path) -> None:
 
 @any_source
 def test_stress_measures_of_the_plane(page: Page, case_result: xr.Dataset) -> None:
+    from contactstudy.explorer.page import MEASURES
+
     titles = {}
     for text, name in MEASURES.items():
         page.measure.value = name
@@ -271,7 +286,7 @@ def test_notebook_receives_updates(folder: Path, monkeypatch: pytest.MonkeyPatch
         def send(self, data=None, metadata=None, buffers=()):
             pushed_panes.append(data)
 
-    page = Page(open_cases(folder))
+    page = new_page(open_cases(folder))
     view, document, comm = page.view(), Document(), Spy()
     root = view.get_root(document, comm)
     add_to_doc(root, document, hold=True)
@@ -289,10 +304,12 @@ def test_explore(folder: Path, case_result: xr.Dataset) -> None:
 
 
 def test_missing_extra(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    import panel as pn
+
     monkeypatch.setattr(server, "find_spec", lambda name: None)
     with pytest.raises(ContactStudyError, match=r'pip install "contactstudy\[explore\]"'):
         explore(folder)
-    assert "panel" in sys.modules
+    assert sys.modules["panel"] is pn
 
 
 def test_taken_port() -> None:
@@ -308,6 +325,8 @@ def test_taken_port() -> None:
 
 
 def test_unbounded_values_are_triangles() -> None:
+    from contactstudy.explorer.figures import StudyFigure
+
     figure = StudyFigure()
     values, x = np.array([2.0, np.inf]), np.array([0.0, 1.0])
     marked_cases = [(0, 2.0, "blue"), (1, np.inf, "red")]
@@ -319,4 +338,6 @@ def test_unbounded_values_are_triangles() -> None:
 
 
 def test_mark_of_rounding() -> None:
+    from contactstudy.explorer.page import _marked_text
+
     assert _marked_text("0 N", "rounding: below 1e-06 of it") == "0 N (rounding: below 1e-06 of it)"

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from tests.browser import browser, chromium, open_served
-from tests.explorer.conftest import free_port
+from tests.explorer.conftest import free_port, needs_panel
 
-pytest.importorskip("panel", reason="the extra `explore` is not installed")
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
 
 pytestmark = [
+    needs_panel,
     pytest.mark.browser,
     pytest.mark.skipif(chromium() is None, reason="Chromium is not installed"),
 ]

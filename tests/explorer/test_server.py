@@ -14,12 +14,12 @@ from urllib.parse import urlsplit
 
 import pytest
 
-pytest.importorskip("panel")
-
 from contactstudy import ContactStudyError, InvalidInputError
 from contactstudy.explorer import serve
 from contactstudy.study import StudyFileError
-from tests.explorer.conftest import free_port
+from tests.explorer.conftest import free_port, needs_panel
+
+pytestmark = needs_panel
 
 SCRIPT_WITHOUT_PANEL = """
 import sys

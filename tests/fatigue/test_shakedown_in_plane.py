@@ -76,6 +76,7 @@ def sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
     )
 
 
+@pytest.mark.slow
 def test_sphere_reaches_the_published_limit() -> None:
     """The ratio p0 / k is 4.68 without friction; the bound converges with more positions, without a gap."""
     limits = []
@@ -94,6 +95,7 @@ def test_program_without_convergence_warns(fading_line_contact, monkeypatch) -> 
     assert float(bound["program_gap"]) > 1e-4
 
 
+@pytest.mark.slow
 def test_equilibrium_elements_give_a_similar_limit() -> None:
     """An independent program with linear stresses in triangles has fewer freedoms and a slightly lower limit."""
     length, x_edges, z_edges = 0.5, np.linspace(0, 0.5, 7), np.linspace(0, 2.4, 11)

@@ -46,7 +46,7 @@ def test_plane_problems(length: float, poisson: float, tolerance: float) -> None
 def test_displacement_of_a_line_contact() -> None:
     """`nu = 0`, inside the contact `E u_z` is `-p0 y^2 / a`, and friction adds the slope `q`."""
     case = fe.LoadCase(2.5, fe.Linear(), 0.3, 0.0)
-    harmonic = superpose.harmonics(2.5, 0.0, UNIFORM, (0.0, 0.5, 1.25), (1.0,), COARSE())
+    harmonic = superpose.harmonics(2.5, 0.0, UNIFORM, (0.0, 0.5, 1.25), (1.0,), COARSE(nodes=4))
     y = np.array([-0.6, -0.3, 0.0, 0.3, 0.6])
     result = superpose.displacement(harmonic, case, 0, 1, y, 2, superpose.transform_ellipse)
     exact = -(y**2) + 0.3 * 0.5 * (y * np.sqrt(1 - y**2) + np.arcsin(y))
@@ -59,7 +59,7 @@ def test_long_body_equals_half_space() -> None:
     bump = fe.Bump(6.0, 1.0)
     x, z = (6.0, 6.5, 7.5), (0.5, 1.0, 2.0)
     shapes = [(bump, "z"), (bump, "y")]
-    harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4))
+    harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4, growth=2.5))
     result = superpose.stresses(harmonic, 0, 1, 0.3, Y)
     node, weight = np.polynomial.legendre.leggauss(60)
     loads = np.outer(weight * bump(6 + node), weight * fe.quartic(node))

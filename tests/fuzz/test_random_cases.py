@@ -38,7 +38,7 @@ def test_cases_on_refined_cells(rng: Random) -> None:
 
 
 def test_seed_determines_case() -> None:
-    first_case, second_case = (outcome_of(Random(3)) for _ in range(2))
+    first_case, second_case = (outcome_of(Random(9)) for _ in range(2))
     assert (first_case.kind, first_case.message, first_case.checked) == (
         second_case.kind,
         second_case.message,

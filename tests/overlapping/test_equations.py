@@ -45,6 +45,7 @@ def test_correction_is_symmetric(length: float) -> None:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 
+@pytest.mark.slow
 def test_resolution_settings_are_converged() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to((1 - grid.y**2) ** 2, grid.shape)

@@ -148,7 +148,7 @@ def test_long_body_equals_exact_model(on_cells, unit_material: Material) -> None
 def test_contact_converges_to_exact_model_with_length(cylinder_gap, unit_material: Material) -> None:
     difference = []
     for length in (2.5, 8.0, 24.0):
-        gap = cylinder_gap(length, (int(8 * length), 32))
+        gap = cylinder_gap(length, (int(4 * length), 24))
         pressures = [
             solve_contact(body, gap, load=length * LINE_LOAD)["pressure"].max("y").values
             for body in (FiniteLengthSpace(length=length, material=unit_material), single_mirror(length, unit_material))

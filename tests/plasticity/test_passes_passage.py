@@ -78,7 +78,11 @@ def integrate_rates(
 
 @pytest.mark.parametrize(
     ("friction", "yield_ratio", "hardening"),
-    [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
+    [
+        (0.0, 0.95, (0.0, 20.0)),
+        (0.2, 0.97, (0.0, 10.0)),
+        pytest.param(0.2, 0.9, (30.0, 0.0), marks=pytest.mark.slow),
+    ],
 )
 def test_layer_agrees_with_rate_equations(
     line_contact, friction: float, yield_ratio: float, hardening: tuple[float, float]

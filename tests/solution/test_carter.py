@@ -41,7 +41,10 @@ def largest_under_carter(friction: float, stick: float) -> float:
     return float(np.sqrt(squares.max()))
 
 
-@pytest.mark.parametrize(("friction", "force_fraction"), [(0.3, 0.25), (0.5, 0.8), (1.0, 0.5)])
+@pytest.mark.parametrize(
+    ("friction", "force_fraction"),
+    [(0.3, 0.25), *(pytest.param(*pair, marks=pytest.mark.slow) for pair in [(0.5, 0.8), (1.0, 0.5)])],
+)
 def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
     profile = cs.profiles.Lundberg.for_pressure(
         PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
@@ -76,8 +79,17 @@ def test_coulomb_law_holds_inside_cells(body: cs.Body, creepage: dict[str, float
     half_width = case.hertz_half_width
     scales = {name: 0.3 * half_width / RADIUS / (half_width if name == "spin" else 1.0) for name in creepage}
     motion = cs.Rolling(**{name: value * scales[name] for name, value in creepage.items()})
-    y = half_width * np.linspace(-0.8, 0.8, 161)
-    stress = cs.solve(replace(case, motion=motion), x=np.linspace(0.25e-3, 0.35e-3, 5), y=y, z=[0.0])
+    contact = cs.solve(replace(case, motion=motion), stresses=False)
+    stress = cs.stress_field(
+        body,
+        contact.pressure,
+        traction_x=contact.traction_x,
+        traction_y=contact.traction_y,
+        x=np.linspace(0.25e-3, 0.35e-3, 5),
+        y=half_width * np.linspace(-0.8, 0.8, 161),
+        z=[0.0],
+        inside_cells=contact.pressure,
+    )
     pressure = -stress.sigma_zz
     ratio = np.hypot(stress.tau_xz, stress.tau_yz) / (0.3 * pressure)
     assert float(ratio.where(pressure > 0.3 * pressure.max()).max()) < 1.005

@@ -55,7 +55,7 @@ def regime_errors(tmp_path_factory):
         base={**study.base, "accuracy": 0.1},
         sweep={
             **study.sweep,
-            "e_over_a": [0.0, 1.0],
+            "e_over_a": [0.0],
             "gamma": [0.078],
             "profile": study.sweep["profile"][:1],
         },

@@ -19,7 +19,7 @@ ROLLS: dict[str, Any] = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
-    "roller_length": 0.2e-3,
+    "roller_length": 0.1e-3,
     "roller_body": "half-space",
     "body": "half-space",
     "max_pressure": 1.5e9,

@@ -325,6 +325,7 @@ def test_wear_by_slip_equals_wear_by_work() -> None:
     assert by_slip == pytest.approx(by_work, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_rolling_window_widens_until_it_contains_the_contact():
     """The contact of a crowned roller at a low load is wider than the first window."""
     roller = Roller(radius=5e-3, length=0.3e-3, profile=Ellipsoid(crown_radius=3e-3))

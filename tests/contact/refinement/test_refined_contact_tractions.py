@@ -107,7 +107,7 @@ def test_given_columns_are_used() -> None:
     edges = STEEL_CASE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
     half_width = STEEL_CASE.hertz_half_width
     case = replace(STEEL_CASE, motion=CREEPAGES)
-    computed = solve(case, Grid.from_edges(edges, (-1.5 * half_width, 1.5 * half_width), 40), stresses=False)
+    computed = solve(case, Grid.from_edges(edges, (-1.5 * half_width, 1.5 * half_width), 30), stresses=False)
     assert computed.sizes["x"] == edges.size - 1
     assert float(computed["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
 
@@ -219,6 +219,7 @@ def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -
     assert "comment" in errors.friction_work_error.attrs
 
 
+@pytest.mark.slow
 def test_window_of_a_wheel_on_a_rail() -> None:
     """The window contains the contact with the margin of rolling, although it exceeds the first window."""
     steel = Material(206e9, 0.28)
