@@ -317,17 +317,16 @@ def markdown(table: Table) -> str:
 
 
 def plot_convergence(tables: list[Table]) -> Figure:
-    """Draw errors over every setting; a dot marks the value in use."""
+    """Draw errors over the values of every setting at equal distances; a dot marks the value in use."""
     figure, axes = panels(len(tables))
     for ax, table in zip(axes, tables, strict=True):
         used = table.values.index(table.used)
         for style, (quantity, errors) in zip(line_styles(len(table.errors)), table.errors.items(), strict=True):
             visible = np.maximum(errors, 1e-12)
-            ax.plot(table.values, visible, marker=".", label=textwrap.shorten(quantity, 30), **style)
-            ax.plot(table.used, visible[used], marker="o", color=style["color"])
-        ax.set_xscale("log", base=2)
+            ax.plot(visible, marker=".", label=textwrap.shorten(quantity, 30), **style)
+            ax.plot(used, visible[used], marker="o", color=style["color"])
         ax.set_yscale("log")
-        ax.set_xticks(table.values, [f"{value:.3g}" for value in table.values])
+        ax.set_xticks(range(len(table.values)), [f"{value:.3g}" for value in table.values])
         ax.set_xlabel(table.setting)
         ax.set_ylabel("error")
         ax.set_title("\n".join(textwrap.wrap(table.title, 36)), fontsize="small")

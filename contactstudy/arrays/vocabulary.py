@@ -130,7 +130,7 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "corner_x": Variable(SCALAR, "m", "x_c", "x of the loaded convex corner of the largest intensity"),
     "corner_slope": Variable(SCALAR, "1", "s", "jump of the slope of the generatrix at the corner"),
     "corner_intensity": Variable(SCALAR, "Pa", r"E^* s / 2\pi", "intensity of the logarithmic pressure at the corner"),
-    "corner_distance": Variable(SCALAR, "m", "d_0", "distance from the corner at which its logarithm is 0"),
+    "corner_distance": Variable(SCALAR, "m", "d_0", "distance d0 in the law of the pressure at the corner"),
     "end_exponent": Variable(SCALAR, "1", "m", "exponent of the pressure at the sharper singular end"),
     "end_exponent_first": Variable(SCALAR, "1", r"m_\mathrm{I}", "exponent at a singular end nearer to end I"),
     "end_exponent_last": Variable(SCALAR, "1", r"m_\mathrm{II}", "exponent at a singular end nearer to end II"),

@@ -143,8 +143,8 @@ class Chamfer(Shape):
 
     Notes
     -----
-    Under a loaded sharp corner the pressure is unbounded: ``p = E* s / (2 pi) ln(d0 / d)`` at the
-    distance d, with the slope ``s = tan(angle)``. :func:`contactstudy.contact.corner_peak` returns the peak of a small
+    Under a loaded sharp corner the pressure is unbounded: ``p = E* s / (2 pi) ln(d0 / d)`` at distances d well below
+    d0, with the slope ``s = tan(angle)``. :func:`contactstudy.contact.corner_peak` returns the peak of a small
     blend radius.
 
     Examples

@@ -114,7 +114,7 @@ def test_singular_corner(case_result: xr.Dataset) -> None:
     corner = case_result.assign(peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6)
     page = Page(report.html(corner))
     assert page.text.count("singular: unbounded towards the corner at x = 5 mm") == 3
-    assert "distance from the corner at which its logarithm is 0" in page.text
+    assert "distance d0 in the law of the pressure at the corner" in page.text
 
 
 @pytest.mark.usefixtures("without_encoding")

@@ -2,7 +2,7 @@
 
 At the distance d from a sharp end the pressure is ``K d**-m``, with ``m = 1/2`` at a rigid end; at an elastic end m
 follows from the two materials or is fitted. Where the slope of the gap jumps by s > 0, it is
-``E* s / (2 pi) ln(d0 / d)``. A small radius of the edge and a blend of the corner bound the pressure.
+``E* s / pi arsinh(sqrt(d0 / 4d))``. A small radius of the edge and a blend of the corner bound the pressure.
 """
 
 from __future__ import annotations
@@ -163,57 +163,55 @@ def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
     return float(EDGE_FACTOR * (k**2 * modulus / radius) ** (1 / 3))  # eq. (42)
 
 
-CORNER_FIT_START, CORNER_FIT_STOP = 2.0, 32.0  # range of the fit of d0, over the corner's column. Accuracy.
+CORNER_FIT_START, CORNER_FIT_STOP = 4.0, 64.0  # range of the fit of d0, over the corner's column. Accuracy.
+CORNER_STEP_ERROR = 1e-2  # relative error of d0 due to steps of the pressure. Accuracy.
 MAX_BLEND_WIDTH = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
 @dataclass(frozen=True, kw_only=True)
 class CornerLaw:
-    """Logarithmic pressure at a convex corner."""
+    """Pressure at a convex corner: a logarithm within d0, ``d**-0.5`` beyond the d0 of a steep corner."""
 
     x: float  # position, metres
     slope: float  # jump ``s`` of the slope
     intensity: float  # ``E* s / (2 pi)``, Pa
-    distance: float = np.nan  # ``d0`` and its estimated error, metres; NaN where the contact ends at the corner
-    distance_error: float = np.nan
-    end: EndLaw | None = None  # law if the contact ends at the corner, because the chamfer is too steep for contact
+    distance: float  # ``d0`` and its estimated error, metres; NaN, with an infinite error, on too few columns
+    distance_error: float
 
 
+@np.errstate(over="ignore")  # d0 of an almost flat corner
 def corner_law(
-    corner: tuple[float, float], modulus: float, exponent: float, edges: FloatArray, pressure: FloatArray
+    corner: tuple[float, float], modulus: float, edges: FloatArray, pressure: FloatArray
 ) -> CornerLaw | None:
     """Law of a corner (position, jump of the slope) from the pressure (column, y); None without contact."""
-    # The mean of ``ln d`` over a column determines d0 from its pressure; the mean of both sides removes odd terms.
     x, slope = corner
     intensity = modulus * slope / (2 * np.pi)  # eq. (42a)
     index = int(np.abs(edges - x).argmin())
     if not 0 < index < edges.size - 1 or not pressure[index - 1 : index + 1].any():
         return None
-    both_sides = (edges[index:] - x, pressure[index:]), (x - edges[index::-1], pressure[index - 1 :: -1])
-    is_loaded = [bool(values[0].any()) for _, values in both_sides]
-    if not all(is_loaded):
-        face_beyond = max(float(distances[-1]) for distances, _ in both_sides)
-        end = EndLaw(exponent=exponent).with_intensity(*both_sides[is_loaded.index(True)], face_beyond)
-        return CornerLaw(x=x, slope=slope, intensity=intensity, end=end)
-    centre = int((pressure[index - 1] + pressure[index]).argmax())
-    sides = [(distances, values[:, centre]) for distances, values in both_sides]
-    width = max(float(distances[1]) for distances, _ in sides)
-    fits = [[_log_distance(*side, width * factor, intensity) for side in sides] for factor in (1.0, 2.0)]
-    logs = np.mean(fits, axis=1)
-    if not np.isfinite(logs).all():
-        return CornerLaw(x=x, slope=slope, intensity=intensity, distance_error=np.inf)
+    row = pressure[:, int((pressure[index - 1] + pressure[index]).argmax())] / intensity
+    sides = (edges[index:] - x, row[index:]), (x - edges[index::-1], row[index - 1 :: -1])
+    # On the outer side, which carries less, the contact ends at d0 / 4 from a steep corner.
+    reach = CORNER_FIT_STOP * float(edges[index + 1] - x)
+    distances, values = max(sides, key=lambda side: float(np.diff(np.minimum(side[0], reach)) @ side[1]))
+    logs = [_log_distance(distances, values, distances[1] * factor) for factor in (1.0, 2.0)]
     distance = float(np.exp(logs[0]))
-    error = distance * abs(float(np.expm1(logs[1] - logs[0])))
-    return CornerLaw(x=x, slope=slope, intensity=intensity, distance=distance, distance_error=error)
+    error = distance * (abs(float(np.expm1(logs[1] - logs[0]))) + CORNER_STEP_ERROR)
+    return CornerLaw(
+        x=x, slope=slope, intensity=intensity, distance=distance, distance_error=np.inf if np.isnan(error) else error
+    )
 
 
-def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:
-    """Logarithm of d0 on one side: the value at distance 0 of a line fitted to the values of the columns."""
+def _log_distance(edges: FloatArray, row: FloatArray, width: float) -> float:
+    """Logarithm of d0, where the columns' values have the terms d and 1/d too; NaN on too few columns."""
     low, high, row = _columns_between(edges, row, CORNER_FIT_START * width, CORNER_FIT_STOP * width)
-    if row.size < 2:
+    if row.size < MIN_FIT_COLUMNS:
         return np.nan
-    mean_log = (high * np.log(high) - low * np.log(low)) / (high - low) - 1
-    return float(np.polynomial.polynomial.polyfit(0.5 * (low + high), row / intensity + mean_log, 1)[0])
+    # The steps of the pressure shift the end of a contact by a part of a column: 1/d.
+    middle = 0.25 * (np.sqrt(low) + np.sqrt(high)) ** 2  # where ``d**-0.5`` has its mean
+    terms = np.stack([np.ones(row.size), middle / width, width / middle], axis=1)
+    values = np.log(middle) + row + 2 * np.log1p(-np.exp(-row))  # eq. (42a): 4 d sinh(p / 2K)**2
+    return float(np.linalg.lstsq(terms, values, rcond=None)[0][0])
 
 
 def corner_peak(intensity: float, distance: float, slope: float, blend_radius: float) -> float:

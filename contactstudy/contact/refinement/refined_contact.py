@@ -24,7 +24,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
+from contactstudy.contact.refinement.laws import CornerLaw, EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
     VALUE_TOLERANCE,
     AxialShape,
@@ -138,10 +138,7 @@ def _convex_corners(case: Case) -> list[tuple[float, float]]:
 
 def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
     """Law of the loaded convex corner with the largest intensity; None without one."""
-    exponent = RIGID if case.roller.body is None else np.nan
-    laws = [
-        corner_law(corner, case.modulus, exponent, refined.edges, refined.pressure) for corner in _convex_corners(case)
-    ]
+    laws = [corner_law(corner, case.modulus, refined.edges, refined.pressure) for corner in _convex_corners(case)]
     return max(filter(None, laws), key=lambda law: law.intensity, default=None)
 
 
@@ -190,10 +187,7 @@ def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
     sharper_law = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
     values |= _law_values(sharper_law)
     if corner is not None:
-        values |= {"corner_x": corner.x, "corner_slope": corner.slope, "corner_intensity": corner.intensity}
-        if corner.end is None:
-            values |= {"corner_distance": corner.distance, "corner_distance_error": corner.distance_error}
-        values |= _law_values(corner.end)
+        values |= {f"corner_{name}": value for name, value in vars(corner).items()}
     result = xr.Dataset(values)
     if corner is not None and corner.slope > SMALL_SLOPE:
         result["corner_intensity"].attrs["comment"] = f"a slope above {SMALL_SLOPE} is beyond small strains"

@@ -1,4 +1,4 @@
-"""Convex corners inside the contact: the law, its strength, and the peak under a blend radius."""
+"""Convex corners: the law of gentle and of steep ones, its strength, and the peak under a blend radius."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 import contactstudy as cs
 from contactstudy.contact import corner_peak, edge_peak
-from contactstudy.profiles import Chamfer, FullCrown, Halves, Measured, Profile
+from contactstudy.profiles import Chamfer, Cylinder, FullCrown, Halves, Measured, Profile
 
 STEEL = cs.materials.BEARING_STEEL
 LENGTH = 2e-3
@@ -103,14 +103,65 @@ def test_wide_blend_raises_error(chamfered_roller) -> None:
     assert caught.value.parameter == "blend_radius"
 
 
-def test_steep_chamfer_has_law_of_sharp_end() -> None:
+def corner_law(distance: np.ndarray, d0: float) -> np.ndarray:
+    """Pressure over `corner_intensity` on the inner side of a corner."""
+    return 2 * np.arcsinh(np.sqrt(d0 / (4 * distance)))
+
+
+def solve_at_corner(case: cs.Case, result) -> tuple[np.ndarray, np.ndarray]:
+    """Distances from the first corner, and pressures, on columns from 1e-6 a at the corner."""
+    a, x = float(result.hertz_half_width), float(result.corner_x)
+    distances = a * np.append(0.0, np.geomspace(1e-6, 0.3, 50))
+    bounds = result.x_bounds.values
+    far = np.append(bounds[:, 0], bounds[-1, 1])
+    near = np.concatenate([x - distances[::-1], x + distances[1:]])
+    edges = np.concatenate([far[far < near[0] - 0.03 * a], near, far[far > near[-1] + 0.03 * a]])
+    dy = float(result.y[1] - result.y[0])
+    grid = cs.Grid.from_edges(edges, (float(result.y[0]) - dy / 2, float(result.y[-1]) + dy / 2), result.sizes["y"])
+    fine = cs.solve(case, grid, stresses=False)
+    return fine.x.values - x, fine.pressure.max("y").values
+
+
+CORNERS = [(angle, material) for material in (None, STEEL) for angle in (1, 2, 4, 8, 15, 30, 45)]
+MARKS = [() if corner in ((15, None), (45, STEEL)) else pytest.mark.slow for corner in CORNERS]
+
+
+@pytest.mark.parametrize(
+    ("angle", "material"), [pytest.param(*corner, marks=mark) for corner, mark in zip(CORNERS, MARKS, strict=True)]
+)
+def test_columns_state_d0_of_any_chamfer(angle: float, material: cs.Material | None) -> None:
+    """The law with the stated error agrees with the pressure on columns that resolve the contact beyond the corner."""
+    profile = Chamfer(width=0.1e-3, angle=np.radians(angle))
+    roller = cs.Roller(radius=6e-3, length=LENGTH, profile=profile, material=material)
+    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9)
+    result = cs.solve(case, stresses=False, accuracy=0.02)
+    d0, error, a = (float(result[name]) for name in ("corner_distance", "corner_distance_error", "hertz_half_width"))
+    assert error < 0.05 * d0
+    x, pressure = solve_at_corner(case, result)
+    is_inner = (x > 2e-5 * a) & (x < 2e-3 * a)
+    distance, law = x[is_inner], pressure[is_inner] / float(result.corner_intensity)
+    assert is_inner.sum() > 10
+    assert (law > corner_law(distance, d0 - error)).all()
+    assert (law < corner_law(distance, d0 + error)).all()
+    if angle >= 8:
+        assert -x[pressure > 0].min() == pytest.approx(d0 / 4, rel=0.3)
+
+
+def test_wide_blend_of_steep_chamfer_has_peak_of_edge() -> None:
     sharp = solve_profile(Chamfer(width=0.1e-3, angle=np.radians(45)), accuracy=0.02)
     assert "0.1" in sharp.corner_intensity.attrs["comment"]
-    assert float(sharp.end_exponent) == 0.5
     radius = 20e-6
     blended = solve_profile(Chamfer(width=0.1e-3, angle=np.radians(45), blend_radius=radius))
-    law = edge_peak(float(sharp.end_intensity), STEEL.plane_strain_modulus, radius)
+    intensity = float(sharp.corner_intensity) * np.sqrt(float(sharp.corner_distance))
+    law = edge_peak(intensity, STEEL.plane_strain_modulus, radius)
     assert law == pytest.approx(float(blended.peak_pressure), rel=0.1)
+
+
+@pytest.mark.filterwarnings("error")
+def test_almost_flat_corner_has_no_d0() -> None:
+    """At a slope of 1e-5 its logarithm is thousands."""
+    result = solve_profile(Chamfer(width=0.5e-3, depth=5e-9) + Cylinder(0.1e-3), accuracy=0.1)
+    assert np.isinf(result.corner_distance_error)
 
 
 def test_measured_corner_has_infinite_peak_error() -> None:

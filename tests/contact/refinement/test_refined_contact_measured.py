@@ -48,3 +48,13 @@ def test_ridge_is_resolved_at_any_position(position: float) -> None:
     profile = Measured(x, drop) + Cylinder(fillet_radius=0.03 * length)
     largest, _ = peak(profile, length, 0.1, max_pressure=1e9)
     assert largest > 2.5e9
+
+
+def test_points_of_ridge_between_samples_split_the_first_columns() -> None:
+    """A ridge of 2 um between samples 15 um apart carries the largest pressure."""
+    length, width, crest = 60e-3, 1e-6, (0.1685 - 0.5) * 60e-3
+    far = np.linspace(-length / 2, length / 2, 601)
+    x = np.sort(np.concatenate([crest + width * np.linspace(-3, 3, 25), far[np.abs(far - crest) > 4 * width]]))
+    drop = 0.3e-6 * (1 - np.exp(-(((x - crest) / width) ** 2)))
+    largest, _ = peak(Measured(x, drop, largest_spike=1e-6) + Cylinder(0.03 * length), length, 0.1, max_pressure=1e9)
+    assert largest > 20e9
