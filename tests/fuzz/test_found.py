@@ -61,3 +61,25 @@ def test_small_shift(motion: Shift) -> None:
     result = solve(case, Grid(x_range=(0.0, case.body.length), y_range=window, cells_x=6, cells_y=12), stresses=False)
     assert bool(result["converged"])
     assert float(result["slip_error"]) < 1e-5
+
+
+def test_shift_of_overlapping_ends() -> None:
+    """Each descent of the energy began at an iterate of Newton's method that went round in circles."""
+    steel = Material(210e9, 0.0)
+    tapered = profiles.FujiwaraKawase(
+        amplitude=1.689573911465408e-12, edge_drop=3.379147822930816e-12, k1=1.2727051015735997, k2=0.6896010243489831
+    )
+    profile = profiles.Halves(tapered, profiles.Cylinder())
+    case = Case(
+        body=FiniteLengthSpace(length=1.7655611798901384e-06, material=steel),
+        roller=Roller(radius=0.005, length=2.265449651387833e-06, profile=profile, material=steel),
+        max_pressure=5712319.066402162,
+        friction=0.1,
+        end_distance=-2.8849034107501417e-07,
+        tilt=1.4182392634012695e-05,
+        motion=Shift(x=-1.1929520552566943e-12, y=-9.388347962207421e-13),
+    )
+    window = (-2.1761215491055856e-06, 2.1761215491055856e-06)
+    result = solve(case, Grid(x_range=(0.0, case.body.length), y_range=window, cells_x=14, cells_y=19), stresses=False)
+    assert bool(result["converged"])
+    assert int(result["friction_steps"]) < 100

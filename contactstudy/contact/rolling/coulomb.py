@@ -130,6 +130,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         slip = problem.slip(traction, amplitudes)
     steps, converged, accuracy, violation = 0, False, 0.1, np.inf
     visited, change_fraction, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
+    balanced: Guess | None = None
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
@@ -161,8 +162,11 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             change_fraction = 0.5 * change_fraction if sticks.tobytes() in visited else min(1.0, 2 * change_fraction)
             visited.add(sticks.tobytes())
         if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
-            start = Guess(limit_tractions(traction, bound), amplitudes)
-            traction, amplitudes = balance_tractions(problem, start, scale)
+            # Each descent continues the last one: the energy decreases whatever Newton's steps in between do.
+            balanced = balance_tractions(
+                problem, balanced or Guess(limit_tractions(traction, bound), amplitudes), scale
+            )
+            traction, amplitudes = balanced
             slip, change_fraction = problem.slip(traction, amplitudes), 1.0
             sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
     return CoulombSolution(
@@ -277,7 +281,7 @@ def _diagonal(problem: CoulombProblem) -> FloatArray:
     return diagonal
 
 
-def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tuple[FloatArray, FloatArray]:
+def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> Guess:
     """Tractions under a shift as the minimum of ``q B q / 2 - w q`` for ``|q| <= g``, and the unknown rigid slips."""
     # A descent of this convex energy along the slip, projected onto the bound, cannot cycle. Steps: Barzilai and
     # Borwein, IMA J. Numer. Anal. 8 (1988) 141; Birgin, Martinez and Raydan, SIAM J. Optim. 10 (2000) 1196. The rigid
@@ -296,7 +300,7 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tu
         return traction, slip, rigid
 
     if not amplitudes.size:
-        return minimize_energy(amplitudes)[0], amplitudes
+        return Guess(minimize_energy(amplitudes)[0], amplitudes)
     area = float((weights[0] / areas).max())
     max_resultants = np.abs(weights).sum(axis=1) @ bound
     unit = scale * float(max_resultants.max())
@@ -311,7 +315,7 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tu
     # The gradient is the error of the resultants over full sliding's resultants. Speed.
     optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
     amplitudes = np.asarray(scale * optimum.x)
-    return minimize_energy(amplitudes)[0], amplitudes
+    return Guess(minimize_energy(amplitudes)[0], amplitudes)
 
 
 def limit_tractions(traction: FloatArray, bound: FloatArray) -> FloatArray:
