@@ -1,8 +1,9 @@
 """Solve random films and count those that converge: ``python -m benchmarks.random_films --cases 100``.
 
 Crowned rollers with numbers M from 5 to 2000 and L from 2 to 16. Where the film of smooth surfaces closes, asperities
-carry the load. ``--first N --cases 1`` runs one seed. ``--finer`` compares the stated errors with the change to cells
-of a quarter of the size along y and half the size in columns, of films with M up to 80 on contacts of up to 90 a.
+carry the load. ``--first N --cases 1`` runs one seed; the peak memory is that of all seeds so far. ``--finer`` compares
+the stated errors with the change to cells of a quarter of the size along y and half the size in columns, of films with
+M up to 80 on contacts of up to 90 a.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 
 import contactstudy as cs
 from benchmarks.fuzz.shapes import magnitude
+from benchmarks.performance.memory import peak
 from contactstudy.film import Asperities, solve_film
 from contactstudy.film.levels import RESOLUTION, moes_line
 
@@ -118,7 +120,7 @@ def outcome(seed: int, accuracy: float) -> tuple[str, str]:
         kind, text = "failed", f"{kind}: {error}"
     except cs.InvalidInputError as error:
         kind, text = "refused", str(error)
-    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s"
+    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s, peak memory {peak():.0f} MB"
 
 
 def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]] | None:

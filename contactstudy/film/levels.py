@@ -21,6 +21,7 @@ from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
+from contactstudy.contact.normal.prescribed_loads import RigidMotion
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
@@ -168,6 +169,18 @@ class FilmCase:
         grid = self.dry_contact.shape.grid
         loaded = self.dry_contact.pressure.any(axis=0)
         return float(np.abs(grid.y[loaded]).max() + 0.5 * grid.dy) / self.half_width
+
+    @property
+    def tilt_centre(self) -> float:
+        """Position x, metres, where the approach is independent of the tilt."""
+        return self.case.roller_middle if self.case.load_position is None else self.case.load_position
+
+    def line_motion(self, grid: Grid, columns: slice, pressure: FloatArray) -> RigidMotion:
+        """Motion of the reference lines under a pressure over p0 on columns of the grid."""
+        body_load = np.zeros(grid.shape)
+        body_load[columns] = self.pressure_scale * pressure
+        shape = contact_shape(self.dry_case, grid)
+        return shape.line_motions(shape.loads(body_load), body_load).total
 
     @property
     def speed_number(self) -> float:
@@ -396,23 +409,18 @@ def film_on_level(
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
         return operator(loads)[columns] / height_scale
 
-    # The roller's motion has the same reference lines as in the dry contact.
-    gap = shape.gap.values - film.dry_contact.motions.total.height(grid.x)
     unit_load = np.zeros((cells.shape[0], grid.cells_y))
     unit_load[:, 0] = 1.0
-    lever = None
-    if film.case.load_position is not None:
-        lever = cells.x - film.case.load_position / a
-        lever = lever / np.abs(lever).max()
+    arm = cells.x - film.tilt_centre / a
     rough = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=merged.to_centres(gap[columns]) / height_scale,
+        gap=merged.to_centres(shape.gap.values[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
         column_stiffness=merged.compute_stiffness(displace(unit_load)),
         load=film.case.normal_load / (p0 * a**2),
-        lever=lever,
+        lever=None if film.case.load_position is None else arm / np.abs(arm).max(),
         central_film=film.central_film / height_scale,
         asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
         mean_height=None if rough is None else rough.mean_height(height_scale),
@@ -424,6 +432,10 @@ def film_on_level(
         state = _convert_result(film, start, problem)
     else:
         state = _transfer_state(start, problem)
+    # The tilt refers to the reference lines under the pressure of the start, the height to the bodies far away.
+    line_tilt = film.line_motion(grid, columns, merged.to_uniform_cells(state.pressure)).tilt
+    problem = replace(problem, gap=problem.gap - line_tilt * a * arm[:, None] / height_scale)
+    state = initial_state(problem, state.pressure, state.motion, state.distance)
     solution = solve_newton(problem, state, settings, steady=start is not None)
     return FilmOnCells(problem, solution, grid, columns, merged)
 
@@ -441,7 +453,8 @@ def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slic
     (separation,) = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
     distance = merged.to_centres(dry.gap[columns]) / film.height_scale + separation
     motion = np.zeros(len(problem.motions))
-    motion[0] = separation - dry.approach / film.height_scale
+    line_height = dry.motions.total.height(np.array([film.tilt_centre])).item()
+    motion[0] = separation - (dry.approach + line_height) / film.height_scale
     if film.case.load_position is not None:
         max_lever = np.abs(problem.cells.x - film.case.load_position / film.half_width).max()
         motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale

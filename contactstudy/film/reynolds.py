@@ -137,9 +137,9 @@ class FilmCells:
         unbounded = sparse.diags_array(np.where(bounds > 0, 0.0, 1.0))
         return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ upstream)
 
-    def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
-        """Net outflow of each cell, eq. (401), from fluid pressure and mean height (x, y) by the surfaces' distance."""
-        height, pressure = film.value.ravel(), pressure.ravel()
+    def face_flows(self, fluid: Fluid, pressure: FloatArray, film: FloatArray) -> tuple[Flow, Flow]:
+        """Flows through the faces along y and along x, from fluid pressure and mean height (x, y)."""
+        height, pressure = film.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
         entrained = Flow(
@@ -147,12 +147,26 @@ class FilmCells:
             upwind @ sparse.diags_array(density.slope * height),
             upwind @ sparse.diags_array(density.value),
         )
-        along_y, along_x = (
+        driven_y, driven_x = (
             faces.conduct_flow(fluid.flow_number, reduced, height) for faces in (self.faces_y, self.faces_x)
         )
+        return Flow(*(couette + driven for couette, driven in zip(entrained, driven_y, strict=True))), driven_x
+
+    def cell_flows(
+        self, fluid: Fluid, pressure: FloatArray, film: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Flows along x and y at the centres (x, y) per width, and those out of both end faces."""
+        columns, cell_count = self.shape
+        through_y, through_x = (flow.flow for flow in self.face_flows(fluid, pressure, film))
+        through_y, through_x = through_y.reshape(columns, -1), through_x.reshape(-1, cell_count)
+        out_of_ends = through_x[[0, -1]] @ self.lengths * [-1.0, 1.0]
+        return 0.5 * (through_x[1:] + through_x[:-1]), 0.5 * (through_y[:, 1:] + through_y[:, :-1]), out_of_ends
+
+    def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
+        """Net outflow of each cell, eq. (401), from fluid pressure and mean height (x, y) by the surfaces' distance."""
         outflow, by_pressure, by_film = (
-            self.faces_y.outflow @ (entrainment - flow_y) - self.faces_x.outflow @ flow_x
-            for entrainment, flow_y, flow_x in zip(entrained, along_y, along_x, strict=True)
+            self.faces_y.outflow @ flow_y + self.faces_x.outflow @ flow_x
+            for flow_y, flow_x in zip(*self.face_flows(fluid, pressure, film.value), strict=True)
         )
         return Flow(outflow, by_pressure, by_film @ sparse.diags_array(film.slope.ravel()))
 
@@ -167,10 +181,10 @@ class Faces:
     outflow: sparse.csr_array  # (cell, face): net outflow of the cells per flow through the faces
 
     def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> Flow:
-        """Flow by the reduced pressure's gradient, eq. (402), with reversed sign; it rises with any pressure step."""
+        """Flow that the reduced pressure's gradient drives, eq. (402); it rises with any pressure step."""
         # The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         upstream, downstream = self.upstream @ height, self.downstream @ height
-        factor = 2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
+        factor = -2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value
         by_pressure = sparse.diags_array(factor) @ self.gradient @ sparse.diags_array(reduced.slope)
         by_before, by_after = (

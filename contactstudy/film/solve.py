@@ -18,6 +18,8 @@ from contactstudy.arrays.variables import cell_coordinates, describe, require, w
 from contactstudy.case.case import Case
 from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.normal.prescribed_loads import RigidMotion
+from contactstudy.contact.solve import describe_reference_lines
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
 from contactstudy.film.levels import (
@@ -74,14 +76,16 @@ def solve_film(
     Returns
     -------
     Dataset
-        `film_thickness` and `pressure` (x, y), with `asperity_pressure` and the film ratio `film_ratio` (x) between
-        rough surfaces; `slice_film` (x), Moes' formula for the dry load per length of each slice, as bearing programs
-        compute it; `central_film` in the middle of the contact; `least_film` and its position ``_x``, ``_y``;
-        `least_film_middle` in the middle section, `least_film_first` and `least_film_last` towards either end, the
-        latter two with ``_x``; each film with its error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`,
-        `moes_load`, `moes_lubricant` of the largest load per length; `asperity_load_share` and the `viscosity_ratio`
-        kappa of ISO 281. Certificate: `mass_error`, largest net outflow of a full cell over the central flow times the
-        cell's width; `film_load_error`; `film_complementarity_error`. `newton_steps`, `linear_steps`, `film_levels`.
+        `film_thickness`, `pressure` and the flows per width, `flow_x` and `flow_y`, at ambient density (x, y), NaN
+        where the film is broken; `end_flow_first` and `end_flow_last` through the end faces; `approach` and `tilt`
+        as in `solve_contact`. Between rough surfaces also `asperity_pressure` and the film ratio `film_ratio` (x).
+        `slice_film` (x), Moes' formula for the dry load per length of each slice, as bearing programs compute it;
+        `central_film` in the middle of the contact; `least_film` and its position ``_x``, ``_y``; `least_film_middle`
+        in the middle section, `least_film_first` and `least_film_last` towards either end, the latter two with
+        ``_x``; each film with its error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`, `moes_load`,
+        `moes_lubricant` of the largest load per length; `asperity_load_share` and the `viscosity_ratio` kappa of
+        ISO 281. Certificate: `mass_error`, largest net outflow of a full cell over the central flow times the cell's
+        width; `film_load_error`; `film_complementarity_error`. `newton_steps`, `linear_steps`, `film_levels`.
 
     Raises
     ------
@@ -132,7 +136,8 @@ def solve_film(
             stacklevel=2,
         )
     _warn_of_viscosity(film, refined.level_film)
-    labelled = without_error(describe(result, "lubricated contact of a roller with an elastic body"), "slice_film")
+    described = describe(result, "lubricated contact of a roller with an elastic body")
+    labelled = without_error(described, "slice_film", "approach", "tilt")
     cells = {"level": refined.level._asdict(), "resolution": asdict(film.resolution)}
     recorded_arguments = {"accuracy": limit, "inlet": film.inlet, "rms": film.rms, **cells}
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
@@ -359,18 +364,25 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         expanded[solved.columns] = values
         return expanded[:, ::-1] if mirrored else expanded
 
-    pressures = {"pressure": solution.fluid_pressure}
+    fluid_pressure, asperity_pressure = (
+        film.pressure_scale * _spread_pressure(solved, values)
+        for values in (solution.fluid_pressure, solution.asperity_pressure)
+    )
+    fields = {"pressure": expand(fluid_pressure + asperity_pressure, 0.0)}
     if film.asperities is not None:
-        pressures["asperity_pressure"] = solution.asperity_pressure
-    fields = {
-        name: expand(film.pressure_scale * _spread_pressure(solved, values), 0.0) for name, values in pressures.items()
-    }
-    if film.asperities is not None:
-        fields["pressure"] = fields["pressure"] + fields["asperity_pressure"]
+        fields["asperity_pressure"] = expand(asperity_pressure, 0.0)
     cells = solved.problem.cells
     uniform_y = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
-    height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform_y)
-    fields["film_thickness"] = expand(film.height_scale * height, np.nan)
+    flow_x, flow_y, end_flows = cells.cell_flows(solved.problem.fluid, solution.fluid_pressure, solution.film)
+    flow_scale, is_full = film.speed * film.height_scale, fluid_pressure > 0
+    for name, values, scale, is_known in (
+        ("film_thickness", solution.film, film.height_scale, np.True_),
+        ("flow_x", flow_x, flow_scale, is_full),
+        ("flow_y", flow_y, sign * flow_scale, is_full),
+    ):
+        uniform_values = scale * PchipInterpolator(cells.y, values, axis=1)(uniform_y)
+        fields[name] = expand(np.where(is_known, uniform_values, np.nan), np.nan)
+    motion = compute_rigid_motion(film, solved)
     y = -grid.y[::-1] if mirrored else grid.y
     films, errors = refined.films, refined.errors
     scalars: dict[str, float | int | bool] = {}
@@ -387,6 +399,10 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "slide_roll_ratio": film.speeds.slide_roll_ratio,
         "moes_load": film.moes_load(film.largest_line_load),
         "moes_lubricant": film.moes_lubricant,
+        "approach": motion.level,
+        "tilt": motion.tilt,
+        "end_flow_first": flow_scale * film.half_width * end_flows[0],
+        "end_flow_last": flow_scale * film.half_width * end_flows[1],
         "normal_load": film.case.normal_load,
         "mass_error": solution.residual * solved.problem.central_film / films.central_film,
         "film_balance_error": solution.balance_error * solved.problem.central_film / films.central_film,
@@ -416,10 +432,25 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
             "viscosity_ratio": viscosity_ratio,
             "viscosity_ratio_error": VISCOSITY_EXPONENT * relative_error * viscosity_ratio,
         }
-    return xr.Dataset(
+    result = xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
         coords={"x": grid.x, "y": y} | cell_coordinates(grid),
     )
+    for name in ("approach", "tilt"):
+        result[name].attrs["reference"] = describe_reference_lines(film.case.body, film.case.counterbody)
+    return result
+
+
+def compute_rigid_motion(film: FilmCase, level_film: FilmOnCells) -> RigidMotion:
+    """Approach at the centre of tilt, and tilt, relative to the reference lines under the pressure."""
+    problem, state = level_film.problem, level_film.solution.state
+    pressure = level_film.merged.to_uniform_cells(state.pressure)
+    lines = film.line_motion(level_film.grid, level_film.columns, pressure)
+    height, *tilts = -film.height_scale * state.motion
+    approach = height - lines.height(np.array([film.tilt_centre])).item()
+    if problem.lever is None:
+        return RigidMotion(approach, film.case.tilt)
+    return RigidMotion(approach, tilts[0] * float(np.ptp(problem.lever) / np.ptp(problem.cells.x)) / film.half_width)
 
 
 def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:

@@ -171,20 +171,26 @@ def ellipse_checks() -> Iterator[Check]:
 
 
 def roller_checks(*, full: bool) -> Iterator[Check]:
-    """Certificate of a film between free ends; at the full level, free ends far away."""
-    length = 16 * HALF_WIDTH
+    """Certificate and middle of a film between free ends; at the full level, free ends far away."""
+    length = 32 * HALF_WIDTH
     flush_case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
     flush_film = film.solve_film(flush_case, accuracy=0.1)
-    case = "crowned roller, 16 a, flush, M = 10, L = 5"
+    case = "crowned roller, 32 a, flush, M = 10, L = 5"
     yield Reference(case, "mass balance").compare("net outflow of a cell / (um h)", flush_film["mass_error"], 0.0, 1e-6)
     balance = flush_film["film_balance_error"]
     yield Reference(case, "mass balance with the ends").compare("net outflow of the film / (um h)", balance, 0.0, 1e-8)
     area = flush_film["x_width"] * float(flush_film["y"][1] - flush_film["y"][0])
     load, quantity = (flush_film["pressure"] * area).sum(), "sum of the pressure over the cells, N"
     yield Reference(case, "equilibrium").compare(quantity, load, flush_film["normal_load"], 1e-8, relative=True)
+    line = line_contact.solve_line(float(flush_film["moes_load"]), float(flush_film["moes_lubricant"]), finest=0.1)
+    height = RADIUS * np.sqrt(2 * create_film_case(flush_case).speed_number)
+    for name, expected in (("central_film", line.central_film), ("least_film_middle", line.least_film)):
+        yield Reference(case, "line contact").compare(
+            f"{name}, H", flush_film[name] / height, expected, 5e-3, relative=True
+        )
     if full:
         bodies = FiniteLengthSpace(length=10 * length, material=STEEL), HalfSpace(material=STEEL)
         long_film, half_space_film = (film.solve_film(crowned_case(body, length), accuracy=0.1) for body in bodies)
-        reference = Reference("crowned roller, 16 a, 72 a from both free ends", "half-space")
+        reference = Reference("crowned roller, 32 a, 144 a from both free ends", "half-space")
         for name in ("central_film", "least_film"):
             yield reference.compare(f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True)

@@ -30,7 +30,7 @@ def test_flow_between_films_equals_linear_film_flow():
     nodes, weights = np.polynomial.legendre.leggauss(100)
     linear = height.mean() + 0.5 * nodes * np.diff(height)
     resistance = 1.5 * 0.5 * float(weights @ linear**-3)
-    assert -faces.conduct_flow(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
+    assert faces.conduct_flow(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
 
 
 def test_flow_derivatives_agree_with_differences():
@@ -67,8 +67,8 @@ def test_flow_rises_with_the_pressure_step(law):
     def flow(pressure):
         reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
         pressure_flow = faces.conduct_flow(fluid.flow_number, reduced, height)
-        assert pressure_flow.by_pressure.toarray()[1, 0] <= 0
-        return -float(pressure_flow.flow[1])
+        assert pressure_flow.by_pressure.toarray()[1, 0] >= 0
+        return float(pressure_flow.flow[1])
 
     flows = [flow(pressure) for pressure in (0.1, 0.5, 1.0, 2.0, 5.0)]
     assert np.all(np.diff(flows) >= 0)

@@ -31,10 +31,10 @@ def oil_of(case, load, lubricant, speed=1.0):
     )
 
 
-def film_case(length, load=20.0, lubricant=10.0, *, body=None, profile=None, speed=1.0):
+def film_case(length, load=20.0, lubricant=10.0, *, body=None, profile=None, speed=1.0, end_distance=None):
     roller = cs.Roller(radius=RADIUS, length=length, profile=profile or cs.profiles.Cylinder())
     body = cs.FiniteLengthSpace(length=length, material=STEEL) if body is None else body
-    case = cs.Case(body=body, roller=roller, max_pressure=PRESSURE)
+    case = cs.Case(body=body, roller=roller, max_pressure=PRESSURE, end_distance=end_distance)
     motion = cs.Sliding(body_speed=speed, roller_speed=speed)
     return replace(case, lubricant=oil_of(case, load, lubricant, abs(speed)), motion=motion)
 
@@ -142,6 +142,11 @@ def test_reversed_surfaces_mirror_the_film(crowned):
     mirrored = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN, speed=-1.0))
     assert float(mirrored.least_film_y) == pytest.approx(-float(crowned.least_film_y), rel=1e-6)
     assert mirrored.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
+    speed_flow = crowned.film_thickness.max()
+    for name, sign in (("flow_x", 1), ("flow_y", -1)):
+        expected = sign * crowned[name].values
+        assert mirrored[name].values[:, ::-1] == pytest.approx(expected, abs=1e-6 * float(speed_flow), nan_ok=True)
+    assert float(mirrored.end_flow_last) == pytest.approx(float(crowned.end_flow_last), rel=1e-5)
 
 
 @pytest.mark.parametrize(("speed", "growth"), [(1.2, 1.0), (0.9, 1.11)])
@@ -168,6 +173,94 @@ def test_film_of_another_profile_is_refined_anew(crowned):
     refined = coarse_film(other_case, start=crowned)
     assert int(refined.film_levels) > 1
     assert float(refined.least_film) == pytest.approx(float(coarse_film(other_case).least_film), rel=1e-6)
+
+
+@pytest.mark.parametrize(("tilt", "load_position"), [(1e-4, None), (0.0, 2.5 * HALF_WIDTH)])
+def test_film_obeys_the_gap_equation_between_the_reference_lines(tilt, load_position):
+    """The displacements come from the stress fields' operator, at the top and at the depth of the reference line."""
+    case = replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), tilt=tilt, load_position=load_position)
+    film = coarse_film(case)
+    centre = case.roller_middle if load_position is None else load_position
+    line = np.linspace(0.0, LENGTH, 201)
+    x = film.x.values[[film.sizes["x"] // 3, film.sizes["x"] // 2]]
+    top, deep = (
+        cs.displacement_field(case.body, film.pressure, x=positions, y=[0.0], z=[depth]).u_z.values.ravel()
+        for positions, depth in ((x, 0.0), (line, case.body.depth))
+    )
+    line_tilt, _ = np.polyfit(line, deep, 1)
+    resultant = float(film.x.weighted(film.pressure.sum("y") * film.x_width).mean())
+    line_level = np.interp(resultant, line, deep)
+    drop = CROWN.drop(x - 0.5 * LENGTH, LENGTH)
+    approach = float(film.approach) + float(film.tilt) * (x - centre)
+    expected = drop + top - line_level - line_tilt * (x - resultant) - approach
+    computed = film.film_thickness.sel(x=x).interp(y=0.0).values
+    assert computed == pytest.approx(expected, abs=0.01 * float(film.central_film))
+    assert load_position is not None or float(film.tilt) == tilt
+
+
+@pytest.mark.parametrize("load_position", [None, 2.5 * HALF_WIDTH])
+def test_approach_and_tilt_near_those_of_the_dry_contact(load_position):
+    """The film separates the surfaces: its approach is less by about the central film."""
+    case = replace(film_case(LENGTH, 60.0, 5.0, profile=CROWN), load_position=load_position)
+    film, dry = coarse_film(case), cs.solve(replace(case, lubricant=None), accuracy=0.02, stresses=False)
+    separation = float(dry.approach - film.approach)
+    assert separation == pytest.approx(float(film.central_film), rel=0.1)
+    assert separation < 0.03 * float(dry.approach)
+    assert float(film.tilt) == pytest.approx(float(dry.tilt), rel=0.02, abs=1e-8)
+    for name in ("approach", "tilt"):
+        assert film[name].attrs["reference"] == dry[name].attrs["reference"]
+
+
+def test_flows_balance_and_leave_through_both_ends(crowned):
+    """Mass balance of the rectangle between the centres of the end columns, from the inlet to the middle."""
+    inlet = crowned.sel(y=slice(-2.5 * HALF_WIDTH, 0.0))
+    entered, left = (float(inlet.flow_y.isel(y=row).integrate("x")) for row in (0, -1))
+    leaked = [sign * float(inlet.flow_x.isel(x=column).integrate("y")) for sign, column in ((-1, 0), (1, -1))]
+    assert entered - left == pytest.approx(sum(leaked), rel=0.02)
+    assert leaked[0] == pytest.approx(leaked[1], rel=1e-3)
+    assert float(crowned.end_flow_first) == pytest.approx(float(crowned.end_flow_last), rel=1e-3)
+    # In the middle of the contact the entrained film carries the flow.
+    middle = crowned.sel(x=0.5 * LENGTH, method="nearest").sel(y=0.0, method="nearest")
+    assert float(middle.flow_y) == pytest.approx(float(crowned.entrainment_speed * middle.film_thickness), rel=0.01)
+    broken = crowned.film_thickness.notnull() & (crowned.pressure == 0)
+    assert bool(crowned.flow_y.isnull().where(broken, True).all())
+    assert crowned.flow_y.attrs["units"] == "m2 s-1"
+    assert crowned.end_flow_last.attrs["units"] == "m3 s-1"
+
+
+def test_film_near_the_edge_of_a_quarter_space_equals_that_between_distant_ends():
+    """The second end, thirty half-widths away, has no influence."""
+    length = 30 * HALF_WIDTH + LENGTH
+    bodies = cs.QuarterSpace(material=STEEL), cs.FiniteLengthSpace(length=length, material=STEEL)
+    films = [coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN, body=body, end_distance=0.0)) for body in bodies]
+    for name in ("central_film", "least_film_first", "least_film_last"):
+        assert float(films[0][name]) == pytest.approx(float(films[1][name]), rel=5e-3)
+    assert float(films[0].least_film_last) < 0.9 * float(films[0].least_film_first)
+
+
+def test_load_position_balances_the_pressure():
+    position = 2.5 * HALF_WIDTH
+    film = coarse_film(replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), load_position=position))
+    resultant = float(film.x.weighted(film.pressure.sum("y") * film.x_width).mean())
+    assert resultant == pytest.approx(position, abs=1e-6 * LENGTH)
+    assert float(film.tilt) < 0.0
+    assert float(film.least_film_first) < float(film.least_film_last)
+
+
+def test_asperity_law_of_the_user_carries_its_pressure():
+    stiffness = 1e8  # Pa
+
+    def press(distance):
+        return stiffness * np.exp(-distance / 1e-7)
+
+    film = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN), asperities=Asperities(rms=1e-7, pressure=press))
+    distance = film.film_thickness.sel(x=0.5 * LENGTH, y=0.0, method="nearest")
+    computed = float(film.asperity_pressure.sel(x=0.5 * LENGTH, y=0.0, method="nearest"))
+    # The mean height of the film exceeds the distance of the mean planes.
+    assert float(press(distance)) <= computed < 2 * float(press(distance))
+    area = film.x_width * float(film.y[1] - film.y[0])
+    share = float((film.asperity_pressure * area).sum() / film.normal_load)
+    assert float(film.asperity_load_share) == pytest.approx(share, rel=1e-3)
 
 
 def test_asperities_carry_part_of_the_load():

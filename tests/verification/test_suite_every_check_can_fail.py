@@ -282,7 +282,7 @@ FAULTS: dict[str, tuple[Faults, ...]] = {
     "film": (
         (faster_flow, shifted_pressure, wrong_exponent),
         (heavier_film, wrong_exponent),
-        (unfinished_iteration, heavier_film),
+        (unfinished_iteration, heavier_film, wrong_exponent),
         (faster_flow,),
     ),
     "consistency": (
