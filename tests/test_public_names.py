@@ -14,10 +14,15 @@ import contactstudy
 
 
 @pytest.mark.system
-def test_import_avoids_heavy_modules() -> None:
-    code = (
-        "import contactstudy, sys; print(sorted({'numpy', 'xarray', 'scipy', 'matplotlib', 'dask'} & set(sys.modules)))"
-    )
+@pytest.mark.parametrize(
+    ("module", "heavy"),
+    [
+        ("contactstudy", {"numpy", "xarray", "scipy", "matplotlib", "dask"}),
+        ("contactstudy.study.worker", {"scipy.interpolate", "scipy.optimize", "matplotlib", "distributed"}),
+    ],
+)
+def test_import_avoids_heavy_modules(module: str, heavy: set[str]) -> None:
+    code = f"import {module}, sys; print(sorted({heavy} & set(sys.modules)))"
     finished_process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert finished_process.stdout.strip() == "[]"
 

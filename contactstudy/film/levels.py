@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 import xarray as xr
 from scipy.fft import next_fast_len
-from scipy.interpolate import PchipInterpolator
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
@@ -494,5 +494,5 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
 
 def _interpolate_field(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
     """Values at the centres of cells by monotone cubic polynomials, constant outside the given positions."""
-    along_y = PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
-    return np.asarray(PchipInterpolator(x, along_y, axis=0)(np.clip(cells.x, x[0], x[-1])))
+    along_y = scipy.interpolate.PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
+    return np.asarray(scipy.interpolate.PchipInterpolator(x, along_y, axis=0)(np.clip(cells.x, x[0], x[-1])))

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # imports the interpolation, which is slow to import, on first use
 from scipy import sparse
-from scipy.interpolate import PchipInterpolator
 
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.lubricant import Lubricant
@@ -46,8 +46,8 @@ class Fluid:
 
         steps = np.asarray(FLUIDITY_RATIO ** np.arange(FLUIDITY_NODES) - 1, dtype=np.float64)
         node_pressures = steps / (1 + p0 * oil.pressure_viscosity)
-        viscosity = oil.viscosity_at(p0 * node_pressures) / oil.viscosity
-        fluidity = PchipInterpolator(node_pressures, oil.density_ratio(p0 * node_pressures) / viscosity)
+        values = oil.density_ratio(p0 * node_pressures) / (oil.viscosity_at(p0 * node_pressures) / oil.viscosity)
+        fluidity = scipy.interpolate.PchipInterpolator(node_pressures, values)
         integral = fluidity.antiderivative()
 
         def reduced_pressure(pressure: FloatArray) -> Law:

@@ -8,8 +8,8 @@ from dataclasses import asdict, replace
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, check_solved_for, with_provenance
@@ -343,7 +343,7 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
     """Minimum and position in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
     cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
-    spline = CubicSpline(centres[neighbours], np.log(films[neighbours]))
+    spline = scipy.interpolate.CubicSpline(centres[neighbours], np.log(films[neighbours]))
     extrema = spline.derivative().roots(extrapolate=True)
     positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
@@ -380,7 +380,7 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         ("flow_x", flow_x, flow_scale, is_full),
         ("flow_y", flow_y, sign * flow_scale, is_full),
     ):
-        uniform_values = scale * PchipInterpolator(cells.y, values, axis=1)(uniform_y)
+        uniform_values = scale * scipy.interpolate.PchipInterpolator(cells.y, values, axis=1)(uniform_y)
         fields[name] = expand(np.where(is_known, uniform_values, np.nan), np.nan)
     motion = compute_rigid_motion(film, solved)
     y = -grid.y[::-1] if mirrored else grid.y
@@ -457,8 +457,8 @@ def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
     """Pressure on the uniform cells along y, with the same load on every merged cell."""
     edges = level_film.merged.edges
     load = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values * level_film.merged.counts, axis=1)], axis=1)
-    spread_pressure = np.diff(PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1)), axis=1)
-    return np.asarray(np.maximum(spread_pressure, 0.0))
+    spread_load = scipy.interpolate.PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1))
+    return np.asarray(np.maximum(np.diff(spread_load, axis=1), 0.0))
 
 
 def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:

@@ -100,7 +100,7 @@ CASES = {
 }
 
 
-QUICK = ("crowned", "sharp end inside the face")
+QUICK = ("crowned",)
 """Kinds of the default tier."""
 
 

@@ -55,7 +55,14 @@ def test_quarter_space_has_one_face_load_and_half_space_none(half_space: HalfSpa
 
 
 @pytest.mark.parametrize(
-    ("kind", "distance"), [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.05e-3), ("quarter", 0.0), ("half", 0.0)]
+    ("kind", "distance"),
+    [
+        ("exact", 0.0),
+        ("mirror", 0.0),
+        pytest.param("single-mirror", 0.05e-3, marks=pytest.mark.slow),
+        ("quarter", 0.0),
+        ("half", 0.0),
+    ],
 )
 def test_equivalent_loads_of_solved_pressure(kind: str, distance: float) -> None:
     steel = Material(206e9, 0.3)

@@ -48,7 +48,10 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
     return computed
 
 
-@pytest.mark.parametrize(("kind", "cells"), [("half", "graded"), ("quarter", "graded"), ("finite", "uniform")])
+@pytest.mark.parametrize(
+    ("kind", "cells"),
+    [("half", "graded"), ("quarter", "graded"), pytest.param("finite", "uniform", marks=pytest.mark.slow)],
+)
 def test_fields_scale_with_units(kind: str, cells: str) -> None:
     expected, computed = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
     assert len(expected) > 8

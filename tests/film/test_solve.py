@@ -149,7 +149,7 @@ def test_reversed_surfaces_mirror_the_film(crowned):
     assert float(mirrored.end_flow_last) == pytest.approx(float(crowned.end_flow_last), rel=1e-5)
 
 
-@pytest.mark.parametrize(("speed", "growth"), [(1.2, 1.0), (0.9, 1.11)])
+@pytest.mark.parametrize(("speed", "growth"), [pytest.param(1.2, 1.0, marks=pytest.mark.slow), (0.9, 1.11)])
 def test_next_speed_has_the_cells_and_errors_of_the_previous_film(crowned, speed, growth):
     """The stated errors grow for a thinner film; they cover the film that is refined anew."""
     case = film_case(LENGTH, 10.0, 5.0, profile=CROWN)

@@ -43,7 +43,13 @@ def test_stresses_below_single_cell_contact() -> None:
 
 
 @pytest.mark.parametrize(
-    "motion", [Shift(x=3.6e-11, y=-1.1e-11), Shift(force_x=-2e-10), Shift(force_y=3e-10, x=1e-11)], ids=str
+    "motion",
+    [
+        Shift(x=3.6e-11, y=-1.1e-11),
+        pytest.param(Shift(force_x=-2e-10), marks=pytest.mark.slow),
+        pytest.param(Shift(force_y=3e-10, x=1e-11), marks=pytest.mark.slow),
+    ],
+    ids=str,
 )
 def test_small_shift(motion: Shift) -> None:
     """Newton's method went round in circles: the pressure alone displaces the surfaces by more than the shift."""

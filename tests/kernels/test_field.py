@@ -35,7 +35,7 @@ def test_unaligned_positions_equal_single_positions() -> None:
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("shaped", [False, True])
-@pytest.mark.parametrize("kind", EDGES)
+@pytest.mark.parametrize("kind", ["uniform", pytest.param("graded", marks=pytest.mark.slow)])
 def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: Load, *, shaped: bool) -> None:
     """Uniform loads have steps of the whole pressure at the edges of the cells."""
     grid = Grid.between(EDGES[kind] * 4.0 / EDGES[kind][-1], (-1.2, 1.2), 24)

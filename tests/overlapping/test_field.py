@@ -73,7 +73,10 @@ def test_evaluation_excludes_points_of_other_sets() -> None:
     assert count_evaluated_points(lines) < 1.5 * sum(count_evaluated_points([line]) for line in lines)
 
 
-@pytest.mark.parametrize(("length", "loads"), [(8.0, (Load.NORMAL, Load.ALONG_Y)), (np.inf, (Load.ALONG_X,))])
+@pytest.mark.parametrize(
+    ("length", "loads"),
+    [(8.0, (Load.NORMAL, Load.ALONG_Y)), pytest.param(np.inf, (Load.ALONG_X,), marks=pytest.mark.slow)],
+)
 def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     """The quadratures depend on body, grid and positions, not on the load."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.5, 1.5), cells_x=16, cells_y=16)

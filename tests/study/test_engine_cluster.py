@@ -10,11 +10,12 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study import StudyFileError, engine, load_case, open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
-from tests.small_study import as_toml, identity, small_study
+from tests.small_study import BASE, as_toml, identity, small_study
 from tests.stand_in_solver import DIES, HELD, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
 from tests.study.conftest import start_run, tickets_of
 
+SHORT = {"roller_length": 0.2e-3}  # solved in half of the time
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
@@ -135,7 +136,7 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 @pytest.mark.system
 def test_results_do_not_depend_on_workers(two_workers, tmp_path):
     """Bit for bit: in this process, with two workers, and on a cluster."""
-    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
+    study = small_study(base=BASE | SHORT, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
     for workers in (0, 2):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
     run_study(study, tmp_path / "cluster", scheduler=two_workers)
@@ -148,11 +149,11 @@ def test_results_do_not_depend_on_workers(two_workers, tmp_path):
 @pytest.mark.system
 def test_single_solution_equals_study_result(tmp_path):
     """The former cases of a worker do not change a bit of the next one."""
-    run_study(small_study(), tmp_path / "all", workers=0)
-    single_case_study = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
+    run_study(small_study(base=BASE | SHORT), tmp_path / "all", workers=0)
+    single_case_study = small_study(base=BASE | SHORT, sweep={"e_over_a": [1.0], "friction": [0.1]})
     run_study(single_case_study, tmp_path / "alone", workers=1)
     studies = [
-        load_case(tmp_path / name, identity(e_over_a=1.0, friction=0.1)).drop_vars("seconds")
+        load_case(tmp_path / name, identity(**SHORT, e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
     assert studies[0].equals(studies[1])

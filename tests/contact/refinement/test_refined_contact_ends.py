@@ -101,7 +101,7 @@ def test_crowned_roller_peaks_at_mid_length() -> None:
     assert computed.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
 
 
-@pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), (STEEL, -1e-2)])
+@pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), pytest.param(STEEL, -1e-2, marks=pytest.mark.slow)])
 def test_end_near_free_end_matches_flush_end(material: Material | None, distance: float) -> None:
     """The remaining face is much narrower than the columns; every public function accepts the result's cells."""
     case, flush = (
