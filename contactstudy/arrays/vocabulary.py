@@ -63,8 +63,8 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "parameter_units": Variable(PARAMETER_DIMS, "", "", "unit of the parameter", "empty where it is not known"),
     "raceway": Variable(("raceway",), "", "", "raceway"),
     "roller": Variable(("roller",), "1", "j", "number of the roller"),
-    "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to its reference"),
-    "tilt": Variable(("tilt",), "rad", r"\vartheta", "tilt", "from its reference, positive if larger x is deeper"),
+    "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to reference_depth"),
+    "tilt": Variable(("tilt",), "rad", r"\vartheta", "tilt", "from reference_depth, positive if larger x is deeper"),
     "normal_load": Variable(("normal_load",), "N", "W", "normal load"),
     "slide_roll_ratio": Variable(SLIDE_ROLL_DIMS, "1", "S", "slide-roll ratio"),
     "moment": Variable(("moment",), "N m", "M", "moment", "of the pressure, positive for a load at larger x"),
@@ -86,8 +86,10 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "displacement_y": Variable(XY, "m", "u_y", "displacement of the top along rolling"),
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
     "normal_load": Variable(SCALAR, "N", "W", "normal load"),
-    "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
-    "tilt": Variable(SCALAR, "rad", r"\vartheta", "tilt from its reference, positive if larger x is pressed deeper"),
+    "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to reference_depth"),
+    "tilt": Variable(SCALAR, "rad", r"\vartheta", "tilt from reference_depth, positive if larger x is pressed deeper"),
+    "reference_depth": Variable(SCALAR, "m", "d", "depth of the body's line to which approach and tilt refer"),
+    "roller_reference_depth": Variable(SCALAR, "m", "", "depth of the elastic roller's line, from the contact"),
     "load_position": Variable(SCALAR, "m", "x_W", "position x of the pressure's resultant"),
     "force_x": Variable(SCALAR, "N", "F_x", "force on the body along the roller's axis"),
     "force_y": Variable(SCALAR, "N", "F_y", "force on the body along +y"),
@@ -281,40 +283,28 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
     "traction_coefficient": Variable(SLIDE_ROLL_DIMS, "1", r"\mu", "traction over the load"),
     "power_loss": Variable(SLIDE_ROLL_DIMS, "W", "", "power that sliding and rolling take"),
-    "thermal_reduction": Variable(
-        SLIDE_ROLL_DIMS, "1", r"\varphi_T", "film with a heated inlet over the isothermal one"
-    ),
+    "thermal_reduction": Variable(SLIDE_ROLL_DIMS, "1", r"\varphi_T", "film with heated inlet over isothermal film"),
     "rolling_force": Variable((), "N", "", "force along y on either surface from the film's pressure gradient"),
     "rolling_moment": Variable((), "N m", "t", "moment of the rolling force about the roller's axis"),
     # Contacts of the atlas, in units of the Hertz line contact
     "peak_pressure_ratio": Variable(SCALAR, "1", "", "largest pressure over the Hertz pressure"),
     "peak_von_mises_ratio": Variable(SCALAR, "1", "", "largest von Mises stress over the Hertz pressure"),
-    "approach_ratio": Variable(SCALAR, "1", "", "approach over a**2 / R"),
-    "stiffness_ratio": Variable(SCALAR, "1", "", "stiffness over the contact modulus times the length"),
+    "approach_ratio": Variable(SCALAR, "1", "", "approach over a**2 / R, relative to the depth of the body's length"),
+    "stiffness_ratio": Variable(SCALAR, "1", "", "stiffness over E* L, to the depth of the body's length"),
     "end_load_ratio": Variable(SCALAR, "1", "", "load on the last half-width over the mean load per half-width"),
     # Of :mod:`contactstudy.bearing`
     "strain_energy": Variable(LAW, "J", "U", "strain energy of the contact"),
     "normal_stiffness": Variable(LAW, "N/m", r"\partial Q/\partial\delta", "change of the load with the approach"),
-    "coupling_stiffness": Variable(
-        LAW, "N/rad", r"\partial Q/\partial\vartheta", "change of the load with tilt, and of the moment with approach"
-    ),
+    "coupling_stiffness": Variable(LAW, "N/rad", r"\partial Q/\partial\vartheta", "change of the load with the tilt"),
     "tilting_stiffness": Variable(LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with tilt"),
     "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
     "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
     "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
-    "inner_approach": Variable(SCALAR, "m", "", "approach of the contact with the inner raceway"),
-    "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
-    "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
-    "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
-    "hertz_load_per_length": Variable(
-        SLICE_DIMS, "N/m", "", "load per length of the line contact with the solved pressure"
-    ),
+    "hertz_load_per_length": Variable(SLICE_DIMS, "N/m", "", "load per length of a line contact of equal pressure"),
     "stress_riser": Variable(
         ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
     ),
-    "lamina_equivalent_load": Variable(
-        ("model", "raceway", "slice"), "N", "q_{ke}", "dynamic equivalent load of a lamina"
-    ),
+    "lamina_equivalent_load": Variable(("model", "raceway", "slice"), "N", "q_{ke}", "equivalent load of a lamina"),
     "reference_life": Variable(("model",), "1", "L_{10r}", "basic reference rating life, revolutions"),
     "raceway_life": Variable(("model", "raceway"), "1", "", "revolutions that 9 of 10 raceways survive"),
     # Of :mod:`contactstudy.design`; the unit is the unit of the measure
@@ -334,9 +324,7 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
     "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
     "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
-    "volume_error": Variable(
-        SCALAR, "1", "", "relative difference of the worn volume from the volume by Archard's law"
-    ),
+    "volume_error": Variable(SCALAR, "1", "", "relative difference of the worn volume from Archard's law"),
     # Of :mod:`contactstudy.plasticity`
     "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
     "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
@@ -371,5 +359,7 @@ RULES = {  # names made from other variables or coordinates; their unit, symbol 
     "peak_{name}_y": Variable(SCALAR, "m", "", "y of the largest {variable}"),
     "peak_{name}_z": Variable(SCALAR, "m", "", "z of the largest {variable}"),
     "{name}_error": Variable(SCALAR, "{units}", "", "estimated discretisation error of the {variable}"),
+    "inner_{name}": Variable(SCALAR, "{units}", "", "{variable}, at the inner raceway"),
+    "outer_{name}": Variable(SCALAR, "{units}", "", "{variable}, at the outer raceway"),
     "{name}_over_a": Variable(("{name}",), "1", "{symbol}/a", "{symbol} over a", "{variable}"),
 }

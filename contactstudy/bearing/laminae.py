@@ -126,7 +126,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         "deflection": ("x", deflection, attributes),
         "edge_factor": ("x", edge_factor, attributes),
         "normal_load": ((), load),
-        "approach": ((), approach, attributes | {"reference": "undeformed bodies, at mid-length"}),
+        "approach": ((), approach, attributes | {"long_name": "approach of the undeformed bodies at mid-length"}),
     }
     result = xr.Dataset(variables, coords={"x": x}, attrs={"slices": slices, "tilt": tilt})
     return describe(result, "slice model of ISO/TS 16281")

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import html_table
+from contactstudy.arrays.engineering import format_quantity, html_table
 from contactstudy.arrays.variables import describe, in_si, name_array, require, without_error
 from contactstudy.bearing.energy_spline import STIFFNESSES, ContactResponse, EnergySpline, Nodes
 from contactstudy.checks import FloatArray
@@ -176,6 +176,8 @@ class ContactLaw:
         worst_node = errors[errors.argmax(...)]
         yield "approach", f"{low:.3g} to {high:.3g} um"
         yield "tilt", f"{min_tilt:.3g} to {max_tilt:.3g} mrad"
+        for name, depth in self.references.items():
+            yield str(name).replace("_", " "), format_quantity(float(depth), "m")
         yield "load", f"{float(loads.min()):.3g} to {float(loads.max()):.3g} N"
         yield (
             "error of the load",
@@ -199,7 +201,7 @@ class ContactLaw:
         Dataset
             `normal_load` Q (N), `moment` M about the roller's mid-length (N m), `normal_stiffness` dQ/d approach,
             `coupling_stiffness` dQ/d tilt = dM/d approach, `tilting_stiffness` dM/d tilt; `normal_load_error` and
-            `moment_error`, from interpolation and discretisation.
+            `moment_error`, from interpolation and discretisation; and the reference depths.
 
         Raises
         ------
@@ -215,7 +217,7 @@ class ContactLaw:
                 allowed = f"in the table, from {low:g} to {high:g} {UNITS[name]}"
                 raise InvalidInputError(name, float(outer_values[0]), allowed)
         pairs = delta.values, theta.values
-        return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs))
+        return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)).assign(self.references)
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
         """Approach and tilt under a load and a moment, with the stiffness.
@@ -238,7 +240,8 @@ class ContactLaw:
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
         delta, theta = xr.apply_ufunc(self.solve_position, loads, moments, **PAIR)
         pairs = delta.values, theta.values
-        return add_position_errors(label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)))
+        motion = label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)).assign(self.references)
+        return add_position_errors(motion)
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> ContactResponse:
         """Load, moment and stiffness as arrays, at pairs inside the table; the law extrapolates outside."""
@@ -278,6 +281,11 @@ class ContactLaw:
     def range_of(self, name: str) -> tuple[float, float]:
         """First and last approach or tilt."""
         return float(self.table[name][0]), float(self.table[name][-1])
+
+    @property
+    def references(self) -> xr.Dataset:
+        """Depths to which approach and tilt refer, as far as the table has them."""
+        return self.table[[name for name in ("reference_depth", "roller_reference_depth") if name in self.table]]
 
     def _node_values(self, name: str) -> FloatArray:
         """Values (approach, tilt) of a variable of the table."""
@@ -346,7 +354,7 @@ class Raceways:
         """Load, moment and stiffness at an approach and a tilt of one raceway against the other.
 
         As :meth:`ContactLaw.at`; the result contains the motions of the contacts: `inner_approach`, `inner_tilt`,
-        `outer_approach` and `outer_tilt`.
+        `outer_approach` and `outer_tilt`, with their reference depths.
 
         Raises
         ------
@@ -380,9 +388,9 @@ class Raceways:
         # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
-        for name, motions in (("inner", inner), ("outer", outer)):
-            for kind, values in zip(("approach", "tilt"), motions, strict=True):
-                labelled[f"{name}_{kind}"] = (values.dims, values.values)
+        for side, (law, delta, theta) in zip(("inner", "outer"), pairs, strict=True):
+            for name, values in {"approach": delta, "tilt": theta, **law.references}.items():
+                labelled[f"{side}_{name}"] = (values.dims, values.values)
         return describe(labelled)
 
     def _solve_inner_position(self, approach: float, tilt: float) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact
 from contactstudy.contact.refinement.refined_contact import LOAD_POWER, refine_contact, search_load
-from contactstudy.contact.solve import describe_reference_lines
+from contactstudy.contact.solve import reference_depths
 from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
@@ -208,10 +208,11 @@ def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dat
         "relative_moment_error": errors[1],
     }
     scalars = {"contact_length": solver.case.contact_length, "accuracy": solver.accuracy}
-    reference, centre = describe_reference_lines(solver.case.body, solver.case.counterbody), "the roller's mid-length"
+    scalars |= reference_depths(solver.case.body, solver.case.counterbody)
+    centre = "the roller's mid-length"
     coordinates = {
-        "approach": ("approach", nodes.approaches, {"reference": reference, "comment": f"at {centre}"}),
-        "tilt": ("tilt", nodes.tilts, {"reference": reference, "centre": centre}),
+        "approach": ("approach", nodes.approaches, {"comment": f"relative to reference_depth, at {centre}"}),
+        "tilt": ("tilt", nodes.tilts, {"centre": centre}),
     }
     table = xr.Dataset({name: (dims, values) for name, values in arrays.items()} | scalars, coordinates)
     table["moment"].attrs["comment"] = f"about {centre}"

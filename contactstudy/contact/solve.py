@@ -121,12 +121,12 @@ def solve_contact(
     -------
     Dataset
         `pressure`, `traction_y`, `gap`, `displacement_z` (of `body`) (x, y); `normal_load`, `approach` (where the load
-        acts, or at ``x = 0``), `tilt`, `load_position` of the resultant, `iterations`, `converged`; and the
-        certificate, recomputed from the pressure alone: `load_error`, `penetration_error`, `open_pressure_error`. With
-        stick and slip, instead of `traction_y`: `traction_x`, `traction_y`, `slip_x`, `slip_y`, `stick` (x, y);
-        `force_x`, `force_y`, `moment_z` on the body about the middle of the shape; `longitudinal_creepage`,
-        `lateral_creepage`, `spin`, or `shift_x`, `shift_y`; `friction_work`; and the certificate of the tractions,
-        `bound_error`, `slip_error` and `force_error`.
+        acts, or at ``x = 0``), `tilt`, and their `reference_depth` (of a counterbody `roller_reference_depth`);
+        `load_position` of the resultant, `iterations`, `converged`; and the certificate, recomputed from the pressure
+        alone: `load_error`, `penetration_error`, `open_pressure_error`. With stick and slip, instead of `traction_y`:
+        `traction_x`, `traction_y`, `slip_x`, `slip_y`, `stick` (x, y); `force_x`, `force_y`, `moment_z` on the body
+        about the middle of the shape; `longitudinal_creepage`, `lateral_creepage`, `spin`, or `shift_x`, `shift_y`;
+        `friction_work`; and the certificate of the tractions, `bound_error`, `slip_error` and `force_error`.
 
     Raises
     ------
@@ -248,25 +248,20 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
         "load_position": contact.load_position,
         "iterations": contact.iterations,
         "converged": contact.converged,
+        **reference_depths(shape.body, shape.counterbody),
         **asdict(contact.certificate),
     }
     result = xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | scalars,
         coords={"x": x, "y": y} | cell_coordinates(shape.grid),
     )
-    for name in ("approach", "tilt", "displacement_z"):
-        counterbody = None if name == "displacement_z" else shape.counterbody
-        result[name].attrs["reference"] = describe_reference_lines(shape.body, counterbody)
+    result["displacement_z"].attrs["reference"] = "material line at reference_depth (m) below the load"
     prescribed = {"approach": shape.prescribed.approach, "load_position": shape.prescribed.load_position}
     result = without_error(result, *(name for name, value in prescribed.items() if value is None))
     return describe(result, "contact of a shape with an elastic body")
 
 
-def describe_reference_lines(body: Body, counterbody: Counterbody | None) -> str:
-    """Return a sentence on the material lines to which approach and tilt refer."""
-    bodies = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
-    lines = [
-        f"{name} at a depth of {elastic.depth:g} m" if np.isfinite(elastic.depth) else f"{name} far away"
-        for name, elastic in bodies.items()
-    ]
-    return f"material line below the load: {', '.join(lines)}"
+def reference_depths(body: Body, counterbody: Counterbody | None) -> dict[str, float]:
+    """Depths of the material lines to which approach and tilt refer, by variable; infinite far away."""
+    depths = {"reference_depth": body.depth}
+    return depths if counterbody is None else depths | {"roller_reference_depth": counterbody.body.depth}

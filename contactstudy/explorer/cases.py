@@ -47,8 +47,8 @@ SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a fina
         *("end_exponent", "end_exponent_first", "end_exponent_last"),
     ),
     "load and approach": (
-        *("normal_load", "hertz_max_pressure", "hertz_half_width", "approach", "tilt", "load_position"),
-        *("contact_length", "contact_width", "half_width_middle"),
+        *("normal_load", "hertz_max_pressure", "hertz_half_width", "approach", "tilt", "reference_depth"),
+        *("roller_reference_depth", "load_position", "contact_length", "contact_width", "half_width_middle"),
     ),
     "friction": (
         *("force_y", "force_x", "moment_z", "longitudinal_creepage", "lateral_creepage", "spin", "shift_y", "shift_x"),

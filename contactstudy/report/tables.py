@@ -20,6 +20,7 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import TOLERANCE
 from contactstudy.case.motion import AxialFriction, Sliding
+from contactstudy.contact.solve import reference_depths
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import describe_profile
 
@@ -38,6 +39,8 @@ CORNER = ("corner_x", "corner_slope", "corner_intensity", "corner_distance")  # 
 SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
     "tilt": "tilt",
+    "reference_depth": "reference depth of approach and tilt in the body",
+    "roller_reference_depth": "reference depth of approach and tilt in the roller",
     "load_position": "position x of the resultant",
     "force_x": "force along the axis",
     "force_y": "force along rolling",
@@ -156,7 +159,7 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     yield from _peak_stress(case)
     yield from _edge_tension(case)
     for name, meaning in SCALARS.items():
-        if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
+        if abs(float(case.get(name, np.nan))) > 0:
             # In a study's case a residual above zero shows that the value was prescribed.
             has_rounding_error = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
             is_given = _is_prescribed(case, name) is not None or has_rounding_error or name not in SOLVED
@@ -348,6 +351,9 @@ def _load_rows(case: Case) -> list[Input]:
         rows.append(("the load acts at x =", format_quantity(case.load_position, "m")))
     if case.tilt:
         rows.append(("tilt, positive if larger x is pressed deeper", format_quantity(case.tilt, "rad")))
+    if case.approach is not None or case.tilt:
+        depths = reference_depths(case.body, case.counterbody)
+        rows += [(SCALARS[name], format_quantity(depth, "m")) for name, depth in depths.items()]
     friction = case.friction
     if isinstance(friction, AxialFriction):
         rows.append(("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))

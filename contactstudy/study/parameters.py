@@ -140,7 +140,7 @@ _PARAMETERS = (
     Parameter(
         "approach",
         "m",
-        "approach at mid-length, from first contact without tilt",
+        "approach at mid-length, from first contact without tilt, relative to reference_depth",
         "or `load`",
         consumer=Case,
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
@@ -172,7 +172,7 @@ _PARAMETERS = (
         "distance from the contact to the reference line of an elastic roller",
         "the roller's length with free ends, else far away",
     ),
-    Parameter("tilt", "rad", "misalignment of the roller; positive if larger x is pressed deeper", consumer=Case),
+    Parameter("tilt", "rad", "misalignment from reference_depth; positive: larger x is pressed deeper", consumer=Case),
     Parameter(
         "load_offset",
         "m",

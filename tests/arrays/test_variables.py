@@ -374,6 +374,7 @@ def test_axis_labels_are_short() -> None:
 def test_numbers_without_error_are_marked(case_result: xr.Dataset) -> None:
     """Every scalar in SI of a result or its summary has an error, is an input, or has the mark "not estimated"."""
     input_names = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
+    input_names += ("reference_depth",)
     for dataset in (case_result, analysis.contact_results(case_result), analysis.edge_factors(case_result)):
         for name, value in dataset.data_vars.items():
             is_number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")

@@ -93,8 +93,10 @@ def test_law_from_a_file(short_law: ContactLaw, tmp_path) -> None:
     with xr.open_dataset(tmp_path / "law.nc") as table:
         reopened_law = ContactLaw(table.load())
     assert reopened_law.at(1.7e-6, 3e-4).equals(short_law.at(1.7e-6, 3e-4))
-    assert "far away" in table.approach.attrs["reference"]
+    assert float(table.reference_depth) == np.inf
+    assert "reference_depth" in table.approach.attrs["comment"]
     assert repr(reopened_law) == repr(short_law)
+    assert "reference depth ∞" in repr(reopened_law)
     assert "mrad" in repr(reopened_law)
 
 

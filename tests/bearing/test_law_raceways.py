@@ -39,6 +39,8 @@ def test_compliances_of_raceways_add_up(short_law: ContactLaw) -> None:
     assert float(motion.outer_tilt) == pytest.approx(4e-4, rel=1e-4)
     assert float(motion.normal_load) == pytest.approx(float(single_motion.normal_load), rel=1e-5)
     assert float(motion.coupling_stiffness) == pytest.approx(0.5 * float(single_motion.coupling_stiffness), rel=1e-3)
+    assert float(single_motion.reference_depth) == np.inf
+    assert float(motion.inner_reference_depth) == float(motion.outer_reference_depth) == np.inf
     loaded_motion = raceways.under(float(single_motion.normal_load), float(single_motion.moment))
     assert float(loaded_motion.approach) == pytest.approx(3.2e-6, rel=1e-5)
     assert float(loaded_motion.tilt) == pytest.approx(8e-4, rel=1e-4)

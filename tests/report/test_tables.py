@@ -13,7 +13,7 @@ from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, 
 from contactstudy.analysis import solved_case
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.report import assess, citations, summary
-from contactstudy.report.tables import describe_body, describe_material
+from contactstudy.report.tables import case_table, describe_body, describe_material
 
 STEEL = Material(210e9, 0.3)
 
@@ -35,6 +35,15 @@ def test_errors_of_settled_and_given_cells(case_result: xr.Dataset) -> None:
     assert summary(refined.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
     table = summary(refined).to_dataframe()
     assert table.loc["peak_pressure", "error"] == 0.0121e9
+
+
+def test_reference_of_approach_and_tilt(singular: xr.Dataset) -> None:
+    view = summary(singular)
+    assert (view["reference_depth"].text, view["reference_depth"].remark) == ("0.4 mm", "")
+    assert summary(singular.assign(reference_depth=np.inf))["reference_depth"].text == "∞"
+    pressed = replace(solved_case(singular), max_pressure=None, approach=1e-6)
+    assert "reference depth of approach and tilt in the body: 0.4 mm" in repr(case_table(pressed))
+    assert "reference depth" not in repr(case_table(solved_case(singular)))
 
 
 def test_errors_of_a_motion(case_result: xr.Dataset) -> None:

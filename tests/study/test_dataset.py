@@ -1,7 +1,10 @@
 import dask
 import numpy as np
+import pandas as pd
 import pytest
 
+from contactstudy.export import export_results
+from contactstudy.report import summary
 from contactstudy.study import StudyFileError, collect, load_case, open_study, run_study
 from tests.small_study import BASE, identity, small_study
 from tests.stand_in_solver import FAILS, solve_fake
@@ -130,6 +133,33 @@ def test_intensities_with_different_exponents(tmp_path):
     assert study_dataset["end_exponent"].values[0] != study_dataset["end_exponent"].values[1]
     assert "units" not in study_dataset["end_intensity"].attrs
     assert "end_exponent" in study_dataset["end_intensity"].attrs["comment"]
+
+
+def test_reference_depth_of_each_case(tmp_path):
+    """Tables of a study show the depths to which approach and tilt of each case refer."""
+    base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
+    base |= {"e_over_a": 1.0, "stresses": False, "accuracy": 0.1, "roller_body": "finite-length", "tilt": 1e-4}
+    del base["roller_length"]
+    lengths = [0.3e-3, 0.5e-3]
+    study = small_study(base=base, sweep={"roller_length": lengths}, level="surface")
+    assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
+    opened = open_study(tmp_path)
+    np.testing.assert_allclose(opened.reference_depth, lengths + 2 * opened.hertz_half_width)
+    np.testing.assert_allclose(opened.roller_reference_depth, lengths)
+    assert "reference_depth" in opened.approach.attrs["long_name"]
+    assert summary(opened.isel(roller_length=0))["roller_reference_depth"].text == "0.3 mm"
+    table = pd.read_csv(export_results(tmp_path))
+    np.testing.assert_allclose(table["roller_reference_depth [m]"], lengths)
+    assert table["reference_depth [m]"].tolist() == opened.reference_depth.values.tolist()
+
+
+def test_swept_reference_depth_is_the_dimension(tmp_path):
+    base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
+    base |= {"body": "half-space", "e_over_a": 1.0, "stresses": False, "accuracy": 0.1}
+    run_study(small_study(base=base, sweep={"reference_depth": [1e-3, 2e-3]}), tmp_path, workers=0)
+    opened = open_study(tmp_path)
+    assert opened.reference_depth.dims == ("reference_depth",)
+    assert summary(opened.isel(reference_depth=1))["reference_depth"].text == "2 mm"
 
 
 def test_collect_keeps_summaries_only(folder):

@@ -213,8 +213,9 @@ def test_roughness_must_cover_the_cells():
 
 def test_approach_and_tilt_state_reference():
     result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
-    for name in ("approach", "tilt"):
-        assert f"{LENGTH:g} m" in result[name].attrs["reference"]
+    assert float(result.reference_depth) == LENGTH
+    assert "roller_reference_depth" not in result
+    assert all("reference_depth" in result[name].attrs["long_name"] for name in ("approach", "tilt"))
     assert result.tilt.attrs["centre"] == "load_position"
     assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
 
