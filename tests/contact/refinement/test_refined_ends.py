@@ -177,3 +177,18 @@ def test_law_of_corner_does_not_depend_on_accuracy() -> None:
     assert [float(result.corner_distance) for result in results] == pytest.approx(
         [float(results[-1].corner_distance)] * 3, rel=0.02
     )
+
+
+class Roof:
+    """Two slopes of 0.1."""
+
+    def drop(self, x: np.ndarray, length: float) -> np.ndarray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return 0.1 * np.abs(x)
+
+
+def test_window_is_widened_for_ridge_of_a_long_roller() -> None:
+    roller = Roller(radius=RADIUS, length=4000 * A, profile=Roof())
+    case = Case(body=HALF, roller=roller, max_pressure=PRESSURE)
+    pressure = solve(case, accuracy=0.1, stresses=False).pressure.any("x")
+    assert float(pressure.y[pressure].max()) > 12 * A
