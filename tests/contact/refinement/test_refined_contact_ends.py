@@ -156,3 +156,39 @@ def test_single_loaded_sharp_end_has_law() -> None:
     assert free is None
     assert law is not None
     assert law.exponent == 0.5
+
+
+@pytest.mark.parametrize(("material", "distance"), [(STEEL, 1e-3), pytest.param(None, 1e-4, marks=pytest.mark.slow)])
+def test_law_of_nearly_flush_end_does_not_depend_on_accuracy(material: Material | None, distance: float) -> None:
+    """The pressure hardly grows on columns of several times the remaining face."""
+    body = FiniteLengthSpace(length=SHORT + 2 * distance * A, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=RADIUS, length=SHORT, material=material), max_pressure=PRESSURE)
+    results = [solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.05, 0.01, 0.005)]
+    for result in results:
+        assert np.isinf([result.end_pressure_first, result.peak_pressure]).all()
+        assert float(result.end_exponent) == pytest.approx(0.5 if material is None else 0.226, abs=1e-3)
+        assert float(result.end_intensity) == pytest.approx(float(results[-1].end_intensity), rel=0.01)
+
+
+def test_law_of_corner_does_not_depend_on_accuracy() -> None:
+    roller = Roller(radius=RADIUS, length=SHORT, profile=profiles.Chamfer(width=0.5 * A, angle=0.3))
+    case = Case(body=HALF, roller=roller, max_pressure=PRESSURE)
+    results = [solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.05, 0.01, 0.005)]
+    assert [float(result.corner_distance) for result in results] == pytest.approx(
+        [float(results[-1].corner_distance)] * 3, rel=0.02
+    )
+
+
+class Roof:
+    """Two slopes of 0.1."""
+
+    def drop(self, x: np.ndarray, length: float) -> np.ndarray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return 0.1 * np.abs(x)
+
+
+def test_window_is_widened_for_ridge_of_a_long_roller() -> None:
+    roller = Roller(radius=RADIUS, length=4000 * A, profile=Roof())
+    case = Case(body=HALF, roller=roller, max_pressure=PRESSURE)
+    pressure = solve(case, accuracy=0.1, stresses=False).pressure.any("x")
+    assert float(pressure.y[pressure].max()) > 12 * A
