@@ -17,7 +17,7 @@ REFINED_FRACTION = 0.06
 """Part of the cases whose cells are refined: they take several seconds."""
 
 MOVING_FRACTION = 0.2
-"""Part of the cases on given cells that roll or are shifted, with stick and slip."""
+"""Part of the cases that roll or are shifted, with stick and slip."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
     if rng.random() < 0.3:
         case = replace(case, max_pressure=None, load=case.normal_load)
     random_case = _with_cells(rng, case, refined)
-    if random_case.grid is not None and rng.random() < MOVING_FRACTION:
+    if rng.random() < MOVING_FRACTION:
         friction = abs(case.friction) or 0.1
         moving_case = replace(case, friction=friction, motion=random_motion(rng, case, friction))
         random_case = replace(random_case, case=moving_case)

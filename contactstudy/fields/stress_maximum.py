@@ -34,6 +34,9 @@ LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over 
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
 MIN_SECOND_PEAK = 0.6  # Least peak of a searched half over the largest: a lower one may stress a free end more
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
+BORDER_ERROR = (
+    0.4  # error at the border of stick and slip, over the square of the pressure's rise / pressure. Accuracy.
+)
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
@@ -43,7 +46,7 @@ class Border:
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
     # The bound less the traction grows inside the border like a square root.
 
-    def __init__(self, loads: Loads, poisson: float) -> None:
+    def __init__(self, loads: Loads, poisson: float, inside_rim: BoolArray) -> None:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -53,15 +56,26 @@ class Border:
         bound = ratio_size.max(axis=1, keepdims=True)
         deficit = 1 - ratio_size / np.where(bound > 0, bound, 1.0)
         is_sticking = (pressure > 0) & (deficit > SLIP_TOLERANCE) & (bound > 0)
+        missed = np.zeros(pressure.shape, bool)
         for step in (1, -1):
             is_slipping = np.roll((pressure > 0) & ~is_sticking, step, axis=1)
-            column, first_row = np.nonzero(is_sticking & is_slipping & np.roll(is_sticking, -step, axis=1))
+            is_border = is_sticking & is_slipping
+            has_cell = is_border & np.roll(is_sticking & inside_rim, -step, axis=1)
+            missed |= is_border & ~has_cell
+            column, first_row = np.nonzero(has_cell)
             second_row, slipping_row = first_row + step, first_row - step
             squares = deficit[column, first_row] ** 2, deficit[column, second_row] ** 2
             distance = np.clip(squares[0] / np.maximum(squares[1] - squares[0], 1e-300), 0.0, 1.0)
             border_pressure = (1 - distance) * pressure[column, first_row] + distance * pressure[column, slipping_row]
             traction[:, column, second_row] = border_pressure * ratio[:, column, slipping_row]
             rise[column, second_row] = border_pressure - pressure[column, second_row]
+        # Without a representing cell the cusp is missed. At the distance d from a narrow stick zone at the leading edge
+        # of Carter's contact, here half a cell, the stress is lower by ``f p sqrt(2 d / a)``.
+        cells = np.maximum(np.count_nonzero(pressure, axis=1), 1)
+        missed_error = (missed * bound * pressure).max(axis=1) * np.sqrt(2 / cells)
+        self.error = (
+            BORDER_ERROR * rise**2 / np.where(rise != 0, pressure, 1.0) + missed_error[:, None]
+        )  # (x, y): error of the stress on the top, Pa
         self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
         self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
         self.poisson = poisson
@@ -107,11 +121,11 @@ class Search(NamedTuple):
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     """Points of the search; they do not depend on the friction."""
-    extent, border = body.extent, Border(loads, body.material.poisson)
-    pressure = loads[Load.NORMAL].values
+    extent, pressure = body.extent, loads[Load.NORMAL].values
     column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.
     inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
+    border = Border(loads, body.material.poisson, inside_rim)
     if not column_maxima.any():
         return Search(grid, extent, inside_rim, border, samples=[], peak_width=np.inf)
     samples: list[Points] = []
@@ -126,39 +140,36 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
             for kind, load in loads.items()
         )
     )
+
+    def nearest_cells(x: FloatArray, column: int, depths: FloatArray, spacing: float) -> Points:
+        """Points at cells nearest to `x`, more than `spacing` apart, across a loaded column."""
+        section = pressure[column]
+        y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
+        columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
+        # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
+        inner_rows = np.flatnonzero(inside_rim[columns].any(axis=0))
+        candidates = inner_rows if inner_rows.size else np.arange(grid.cells_y)
+        nearest_rows = candidates[np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1)]
+        rows = np.union1d(nearest_rows, np.flatnonzero(border.rise[column]))
+        centres = grid.x[columns]
+        return Points(centres[select_separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
+
     for peak in _peaks(column_maxima, symmetric=symmetric):
         width = min(variation_lengths(pressure, grid.x, grid.dy, peak, rising=False))
         widths.append(width)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
-            samples.append(
-                _nearest_cells(grid, inside_rim, x, pressure[peak], width * PEAK_DEPTHS, spacing=0.1 * width)
-            )
-    section = pressure[int(column_maxima.argmax())]
-    half_width = 0.5 * grid.dy * np.count_nonzero(section)
+            samples.append(nearest_cells(x, peak, width * PEAK_DEPTHS, spacing=0.1 * width))
+    column = int(column_maxima.argmax())
+    half_width = 0.5 * grid.dy * np.count_nonzero(pressure[column])
     columns = np.flatnonzero(pressure.any(axis=1))
     first_edge, last_edge = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     distances = np.append(half_width * END_DISTANCES, 0.5 * (last_edge - first_edge))
     distances = distances[distances <= 0.5 * (last_edge - first_edge)]
     # One point of the second half is included: the middle is inside the range.
     x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
-    depths = half_width * AXIS_DEPTHS
-    samples.append(_nearest_cells(grid, inside_rim, x, section, depths, spacing=0.1 * half_width))
+    samples.append(nearest_cells(x, column, half_width * AXIS_DEPTHS, spacing=0.1 * half_width))
     return Search(grid, extent, inside_rim, border, samples=samples, peak_width=min(widths))
-
-
-def _nearest_cells(
-    grid: Grid, inside_rim: BoolArray, x: FloatArray, section: FloatArray, depths: FloatArray, spacing: float
-) -> Points:
-    """Points at cells nearest to `x`, more than `spacing` apart, across a loaded section, at the top and `depths`."""
-    y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
-    columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
-    # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
-    inner_rows = np.flatnonzero(inside_rim[columns].any(axis=0))
-    candidates = inner_rows if inner_rows.size else np.arange(grid.cells_y)
-    rows = candidates[np.unique(np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1))]
-    centres = grid.x[columns]
-    return Points(centres[select_separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
 
 
 def select_separated(positions: FloatArray, spacing: float) -> IntArray:
@@ -222,7 +233,8 @@ def find_stress_maximum(
         top = search.top_stresses(points, field[..., :1])
         sample = _maximum_of_samples(points._replace(z=points.z[:1]), top, search.inside_rim_at(points))
         if sample.maximum.value * TOP_MARGIN > maximum.value:
-            maximum = max(maximum, _top_maximum(sample, search, stress_at), key=VALUE)
+            lower, maximum = sorted((_top_maximum(sample, search, stress_at), maximum), key=VALUE)
+            maximum = maximum._replace(error=max(maximum.error, lower.value + lower.error - maximum.value))
     return maximum
 
 
@@ -282,13 +294,14 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
         sample = _maximum_of_samples(centres, stresses, search.inside_rim[np.ix_(columns, rows)])
         if sample.maximum.value <= previous_value * (1 + REFINEMENT_TOLERANCE):
             break
-    # The stress may grow towards the rim.
+    # The stress may grow towards the rim; along y it falls on either side of a border between stick and slip.
     values, inside_rim = von_mises_of(*stresses)[..., 0], search.inside_rim_at(centres)
     column, row, _ = sample.indices
-    error = TOP_ERROR * sample.maximum.value
+    cell = columns[column], rows[row]
+    error = TOP_ERROR * sample.maximum.value + float(search.border.error[cell])
     for line, is_inside, index in (
         (values[:, row], inside_rim[:, row], column),
-        (values[column], inside_rim[column], row),
+        (values[column], inside_rim[column] | bool(search.border.rise[cell]), row),
     ):
         neighbours = slice(max(index - 1, 0), index + 2)
         if not is_inside[neighbours].all():

@@ -318,7 +318,7 @@ class _SplitRange(NamedTuple):
             return np.zeros((0, fine.count))
         replaced_columns = slice(self.start + 1, self.stop - 1)
         is_summed = np.ones(fine.edges.size - 1, bool)
-        is_summed[replaced_columns] = fine.is_unsplit[replaced_columns]
+        is_summed[replaced_columns] = not fine.is_split.any()
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
         return fine.moment_loads(is_summed)[np.searchsorted(fine.edges, midpoints) - 1]
 

@@ -81,13 +81,13 @@ class FineCells:
 
     @cached_property
     def is_split(self) -> BoolArray:
-        """Columns that are split along x."""
+        """Columns that are split along x: all, or none under a flat shape."""
         shape = self.shape_cells
         edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
         fine_means = shape._load_along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
         deviation = np.abs(fine_means - shape.cell_loads.T[..., None]).max(axis=(0, 2))
-        is_uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
-        return np.full(is_uneven.shape, is_uneven.any()) if self.grid.uniform else is_uneven
+        # Tractions may vary in columns under a flat shape, and keep their bound if all columns are split.
+        return np.full(deviation.shape, (deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()).any())
 
     @cached_property
     def x_edges(self) -> FloatArray:
@@ -108,11 +108,6 @@ class FineCells:
     def edges(self) -> FloatArray:
         """Edges of the cells along x and of their nearest images, metres."""
         return mirror_edges(self.grid.x_edges, self.extent)
-
-    @cached_property
-    def is_unsplit(self) -> BoolArray:
-        """Columns and nearest images that are never split."""
-        return ~add_images(self.is_split, 1, self.extent)
 
     @cached_property
     def _x_moments(self) -> FloatArray:

@@ -66,3 +66,10 @@ def test_foreign_errors_are_violations(monkeypatch) -> None:
     for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), ViolationError()):
         monkeypatch.setattr(properties, "CONSTANT_CHECKS", (fails(error),))
         assert outcome_of(Random(3)).kind == "violation"
+
+
+def test_slow_cases_are_violations(monkeypatch) -> None:
+    monkeypatch.setattr(outcome, "MAX_SECONDS", 0.0)
+    slow = outcome_of(Random(3))
+    assert slow.kind == "violation"
+    assert "s of processor time, converged" in slow.message

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import contactstudy as cs
 from contactstudy.checks import FloatArray
@@ -46,6 +47,21 @@ def largest_under_carter(friction: float, stick: float) -> float:
     [(0.3, 0.25), *(pytest.param(*pair, marks=pytest.mark.slow) for pair in [(0.5, 0.8), (1.0, 0.5)])],
 )
 def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
+    result = check_stress_maximum(friction, force_fraction, max_error=0.03)
+    assert abs(float(result.peak_von_mises_x) - LENGTH / 2) < 0.1 * LENGTH
+
+
+@pytest.mark.parametrize(
+    ("friction", "force_fraction", "max_error"),
+    [(1.0, 0.95, 0.08), (0.7, 0.93, 0.08), (0.3, 0.14, 0.08), (0.5, 0.05, 0.15)],
+)
+def test_stress_maximum_at_border_near_rim(friction: float, force_fraction: float, max_error: float) -> None:
+    """The cusp lies at most two cells inside the rim; its stress is between samples, or hidden in a narrow zone."""
+    check_stress_maximum(friction, force_fraction, max_error)
+
+
+def check_stress_maximum(friction: float, force_fraction: float, max_error: float) -> xr.Dataset:
+    """Check the largest stress and its error, over the closed stress at most `max_error`; return the result."""
     profile = cs.profiles.Lundberg.for_pressure(
         PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
     )
@@ -59,8 +75,8 @@ def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: fl
     stick = 1 - creepage * RADIUS / (friction * half_width)
     expected = largest * largest_under_carter(friction, stick)
     assert abs(float(result.peak_von_mises) - expected) < float(result.peak_von_mises_error)
-    assert float(result.peak_von_mises_error) < 0.03 * expected
-    assert abs(float(result.peak_von_mises_x) - LENGTH / 2) < 0.1 * LENGTH
+    assert float(result.peak_von_mises_error) < max_error * expected
+    return result
 
 
 @pytest.mark.parametrize(

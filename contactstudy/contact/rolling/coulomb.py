@@ -130,7 +130,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         slip = problem.slip(traction, amplitudes)
     steps, converged, accuracy, violation = 0, False, 0.1, np.inf
     visited, change_fraction, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
-    balanced: Guess | None = None
+    least: Guess | None = None
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
@@ -163,10 +163,8 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             visited.add(sticks.tobytes())
         if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
             # Each descent continues the last one: the energy decreases whatever Newton's steps in between do.
-            balanced = balance_tractions(
-                problem, balanced or Guess(limit_tractions(traction, bound), amplitudes), scale
-            )
-            traction, amplitudes = balanced
+            least = balance_tractions(problem, least or Guess(limit_tractions(traction, bound), amplitudes), scale)
+            traction, amplitudes = least
             slip, change_fraction = problem.slip(traction, amplitudes), 1.0
             sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
     return CoulombSolution(
