@@ -26,7 +26,7 @@ def _system(name: str) -> list[str]:
 
 def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
     """A second run on this system during the first run on another; the first run ends, or is killed."""
-    fault = "a run in another system (host or container, of another name or the same) that shares the folder"
+    fault = "a run in another host or container that shares the folder"
     names = ["another-host", socket.gethostname()]
     is_possible = (
         shutil.which("unshare")
@@ -35,10 +35,7 @@ def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
     if not is_possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with another name")
     passed = sum(_survives(undisturbed, names[index % 2], killed=index % 4 > 1) for index in range(count))
-    description = (
-        "while it goes on: code 2, its host is named, and it ends bit for bit; after a kill its lock is free, and "
-        "a run resumes bit for bit"
-    )
+    description = "code 2, its host named, it ends bit for bit; after a kill its lock is free, resumed bit for bit"
     return Row(fault, count, passed, description)
 
 

@@ -154,7 +154,7 @@ def damaged_files(undisturbed: xr.Dataset, count: int) -> Row:
         "a batch torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
         count,
         passed,
-        "set aside with a message, its cases alone solved again, afterwards bit for bit",
+        "set aside with a message, its cases alone solved again, bit for bit",
     )
 
 
@@ -274,10 +274,10 @@ def clock_steps(undisturbed: xr.Dataset, count: int) -> Row:
             is_right = is_right and studies.resume(folder) == {"ok": CASES}
             passed += is_right and studies.read_values(folder).identical(undisturbed)
     return Row(
-        "time of day jumps by up to ten years at every reading",
+        "clock of the process jumps by up to ten years at every reading",
         count,
         passed,
-        "run and resumed run, bit for bit; the clock of the process was replaced, a system's clock was not set",
+        "run and resumed run, bit for bit",
     )
 
 
@@ -291,7 +291,7 @@ class _jumping_clock:  # noqa: N801
                 return datetime.now(tz or UTC) + timedelta(days=rng.uniform(-3650, 3650))
 
         real = time.time
-        modules = ("folder", "progress", "worker", "files")
+        modules = ("folder", "run", "worker", "files")
         self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", Jumping) for name in modules]
 
         def jumping() -> float:

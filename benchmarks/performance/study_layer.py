@@ -1,7 +1,8 @@
 """Cost of the study layer beside solving: planning, overhead of a case, files, opening, gain of a second worker.
 
 Usage: ``python -m benchmarks.performance.study_layer [--frictions 50] [--pairs 48] [--cases 100000]``; 0 omits a part.
-The gain of a second worker is printed beside that of two bare processes, without the layer, on the same cases.
+The gain of a second worker is printed beside that of two bare processes, without the layer, on the same cases. The
+options ``--level surface --client`` retain surfaces, and solve on a dask cluster with the scheduler in this process.
 """
 
 from __future__ import annotations
@@ -14,8 +15,11 @@ import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from distributed import Client, LocalCluster
 
 from contactstudy import Study, open_study, run_study, solve
 from contactstudy.study import RunReport
@@ -74,30 +78,64 @@ def overhead(frictions: int) -> None:
     )
 
 
-def files(cases: int, level: str) -> None:
+def overhead_of_distinct_contacts(contacts: int = 1000) -> None:
+    """Print the processor time of cases that share no contact, less the time of the stand-in solver."""
+    solver_seconds = 0.0
+
+    def solve_timed(*arguments: Any, **options: Any) -> xr.Dataset:
+        nonlocal solver_seconds
+        start_time = time.process_time()
+        result = solve_fake(*arguments, **options)
+        solver_seconds += time.process_time() - start_time
+        return result
+
+    sweep = {"max_pressure": np.linspace(1e9, 2e9, contacts).tolist()}
+    study = Study(name="distinct", level="summary", base=BASE | {"e_over_a": 1.0}, sweep=sweep)
+    with tempfile.TemporaryDirectory() as folder:
+        start_time = time.process_time()
+        run(study, Path(folder), 0, solve_timed)
+        seconds = time.process_time() - start_time - solver_seconds
+    print(f"overhead: {1e3 * seconds / contacts:.2f} ms per case, {contacts} distinct contacts (bar 5 ms)", flush=True)
+
+
+def peak_memory() -> float:
+    """Largest memory of this process, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+
+
+def solve_on_client(study: Study, folder: Path) -> RunReport:
+    """Solve a study with the stand-in solver on two workers of a cluster; print their largest memory."""
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "memory_limit": 0}
+    with LocalCluster(**options) as cluster, Client(cluster) as client:
+        report = run_study(study, folder, scheduler=client, progress=False, solver=solve_fake)
+        memories = [f"{memory:.0f} MB" for memory in client.run(peak_memory).values()]
+    print(f"client: scheduler and main process {peak_memory():.0f} MB, workers {', '.join(memories)}", flush=True)
+    return report
+
+
+def files(cases: int, level: str, *, on_client: bool) -> None:
     """Print files, bytes, memory and time to open a study of many cases with the stand-in solver."""
     sweep = {"max_pressure": np.linspace(1e9, 2e9, 10).tolist(), "friction": np.linspace(0, 0.2, cases // 100).tolist()}
     base = BASE | {"roller_length": 0.3e-3}
     study = Study(name="files", level=level, base=base, sweep=sweep | {"e_over_a": np.linspace(0, 4, 10).tolist()})
     with tempfile.TemporaryDirectory() as name:
         start_time = time.process_time()
-        report, _ = run(study, Path(name), 0, solve_fake)
+        report = solve_on_client(study, Path(name)) if on_client else run(study, Path(name), 0, solve_fake)[0]
         solving_seconds = time.process_time() - start_time
         size = sum(path.stat().st_size for path in report.files)
         count = len(report.files)
         del report
-        start_time = time.perf_counter()
+        start_time = time.process_time()
         dataset = open_study(name)
-        opening_seconds = time.perf_counter() - start_time
-        start_time = time.perf_counter()
+        opening_seconds = time.process_time() - start_time
+        start_time = time.process_time()
         max_pressure = float(dataset["peak_pressure"].max())
-        reading = time.perf_counter() - start_time
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+        reading = time.process_time() - start_time
     print(
         f"files, level {level}: {study.size} cases, {count} files, {size / study.size:.0f} bytes per case, "
-        f"{1e3 * solving_seconds / study.size:.1f} ms of processor time per case with the stand-in solver, opened in "
-        f"{opening_seconds:.1f} s, one number of all ({max_pressure:.3g}) in {reading:.2f} s, "
-        f"largest memory {peak:.0f} MB",
+        f"{1e3 * solving_seconds / study.size:.1f} ms per case with the stand-in solver in this process, opened in "
+        f"{opening_seconds:.1f} s of processor time, one number of all ({max_pressure:.3g}) in {reading:.2f} s, "
+        f"largest memory {peak_memory():.0f} MB",
         flush=True,
     )
 
@@ -114,8 +152,10 @@ def planning() -> None:
     plan = study.plan()
     unique, checked = len(plan.unique), plan.review.checked
     seconds = time.process_time() - start_time
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    print(f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {peak:.0f} MB (bar 1000 MB)")
+    memory = peak_memory()
+    print(
+        f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {memory:.0f} MB (bar 1000 MB)"
+    )
 
 
 def solve_without_study(parameters: list[dict[str, object]]) -> float:
@@ -168,15 +208,18 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1, help="times to compare these")
     parser.add_argument("--cases", type=int, default=100_000, help="cases of the stand-in solver, for the files")
     parser.add_argument("--level", default="summary", help="arrays that these retain")
+    parser.add_argument("--client", action="store_true", help="solve these on a cluster of two worker processes")
     options = parser.parse_args()
     os.environ.update(WORKER_ENVIRONMENT)
-    planning()
+    if not options.client:  # a plan of a million cases would be the largest memory
+        planning()
     if options.frictions:
         overhead(options.frictions)
+        overhead_of_distinct_contacts()
     if options.pairs:
         scaling(options.pairs, options.rounds)
     if options.cases:
-        files(options.cases, options.level)
+        files(options.cases, options.level, on_client=options.client)
 
 
 if __name__ == "__main__":
