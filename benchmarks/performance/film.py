@@ -22,7 +22,7 @@ SPEED = 1.0
 NEXT_SPEED = (0.8, 1.25)
 """Next speeds over the first."""
 
-SPEEDS = (8.0, 2.0, 1.0, 0.3)
+SPEEDS = (8.0, 2.0, 0.3)
 """Speeds of a crowned roller, m/s: the table of docs/explanation/film.md."""
 
 ACCURACY = 0.02

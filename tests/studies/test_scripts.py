@@ -309,3 +309,18 @@ def test_residual_stress_leaves_the_free_end_free():
     assert 0 < last < 0.02 * first
     assert len(module.draw(result).axes) == 5
     assert "| in the middle |" in module.table(result)
+
+
+def test_thickest_film_needs_more_crown_than_the_lowest_pressure():
+    module = script("film_profiles")
+    task = module.Task(pressures=(1.2e9,), crowns=(0.25, 1.0), length=0.5e-3, accuracy=0.2)
+    films = module.solve_all(task)
+    assert dict(films.sizes) == {"model": 3, "max_pressure": 1, "crown": 2}
+    choice = module.choose(films).sel(model="flush", max_pressure=1.2e9)
+    assert float(choice["crown_film"]) > float(choice["crown_pressure"])
+    assert float(choice["film_loss"]) > float(choice["film_loss_error"])
+    assert float(choice["pressure_gain"]) > 0.01
+    end_film_ratio = films["end_film_ratio"].sel(crown=1.0, max_pressure=1.2e9)
+    assert float(end_film_ratio.sel(model="flush")) > 1.3 * float(end_film_ratio.sel(model="half-space"))
+    assert "| 1.2 | flush |" in module.table(films)
+    assert len(module.draw(films).axes) == 2
