@@ -19,7 +19,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.normal.prescribed_loads import RigidMotion
-from contactstudy.contact.solve import describe_reference_lines
+from contactstudy.contact.solve import reference_depths
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
 from contactstudy.film.levels import (
@@ -401,6 +401,7 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "moes_lubricant": film.moes_lubricant,
         "approach": motion.level,
         "tilt": motion.tilt,
+        **reference_depths(film.case.body, film.case.counterbody),
         "end_flow_first": flow_scale * film.half_width * end_flows[0],
         "end_flow_last": flow_scale * film.half_width * end_flows[1],
         "normal_load": film.case.normal_load,
@@ -432,13 +433,10 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
             "viscosity_ratio": viscosity_ratio,
             "viscosity_ratio_error": VISCOSITY_EXPONENT * relative_error * viscosity_ratio,
         }
-    result = xr.Dataset(
+    return xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
         coords={"x": grid.x, "y": y} | cell_coordinates(grid),
     )
-    for name in ("approach", "tilt"):
-        result[name].attrs["reference"] = describe_reference_lines(film.case.body, film.case.counterbody)
-    return result
 
 
 def compute_rigid_motion(film: FilmCase, level_film: FilmOnCells) -> RigidMotion:
