@@ -207,7 +207,7 @@ def test_approach_and_tilt_near_those_of_the_dry_contact(load_position):
     assert separation == pytest.approx(float(film.central_film), rel=0.1)
     assert separation < 0.03 * float(dry.approach)
     assert float(film.tilt) == pytest.approx(float(dry.tilt), rel=0.02, abs=1e-8)
-        assert float(film.reference_depth) == float(dry.reference_depth)
+    assert float(film.reference_depth) == float(dry.reference_depth)
 
 
 def test_flows_balance_and_leave_through_both_ends(crowned):

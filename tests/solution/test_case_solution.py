@@ -44,6 +44,7 @@ def test_result_contains_documented_variables_with_units(result) -> None:
             "normal_load",
             "approach",
             "tilt",
+            "reference_depth",
             "load_position",
             "iterations",
             "converged",
