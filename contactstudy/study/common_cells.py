@@ -77,20 +77,24 @@ def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
 
 def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
     """Edges moved and added so that every point is the centre of a cell."""
+    ends = edges[[0, -1]]
     for index, point in enumerate(points):
         cell = int(np.clip(np.searchsorted(edges, point) - 1, 0, edges.size - 2))
         low, high = edges[cell], edges[cell + 1]
         width = high - low
         is_centre = np.abs(centres_of(edges) - point).min() < END_WIDTH * (edges[-1] - edges[0])
-        if is_centre or not edges[0] < point < edges[-1]:
+        spacing = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point).min(initial=np.inf)
+        # A neighbour in the same cell, or at its edge, moves the cell's edges.
+        is_alone = spacing > 0.5 * width * (1 + SPACING_TOLERANCE)
+        if (is_centre and is_alone) or not edges[0] < point < edges[-1]:
             continue
-        spacings = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point)
-        half_cell = min(0.25 * width, 0.5 * spacings.min(initial=np.inf), point - edges[0], edges[-1] - point)
+        half_cell = min(0.25 * width, 0.5 * spacing, point - edges[0], edges[-1] - point)
         distance = min(point - low, high - point)
         if distance > SPACING_TOLERANCE * width:
             half_cell = min(half_cell, distance)
         beyond_cell = np.abs(edges - point) > half_cell * (1 + SPACING_TOLERANCE)
         edges = np.union1d(edges[beyond_cell], [point - half_cell, point + half_cell])
+        edges[[0, -1]] = ends  # without rounding
     return edges
 
 

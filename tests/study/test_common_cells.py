@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from contactstudy import open_study
@@ -128,6 +128,8 @@ def test_refined_columns_share_common_axis(tmp_path):
 
 
 @given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
+@example(np.array([0.0, 1.29, 1.71]), [1.5, 1.625])  # two points in one cell, one at its centre
+@example(np.array([0.0, 1.0]), [0.23, 0.69])  # the first cell begins at the end but for rounding
 def test_stress_points_become_centres_of(source, points):
     points = np.unique(np.round(points, 3))
     cells = centre_cells_on(source, points)
