@@ -23,10 +23,10 @@ for name in ("COMM__TIMEOUTS__CONNECT", "COMM__TIMEOUTS__TCP", "DEPLOY__LOST_WOR
 # dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which is not safe between threads.
 os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 
-# Times depend on the machine, so no example has a deadline. CI must not depend on chance: the examples of the
-# short profile are constant in CI, the examples of `thorough` (`--hypothesis-profile=thorough`) are random.
-settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
-settings.register_profile("thorough", max_examples=100, deadline=None)
+# Times depend on the machine, so no example has a deadline. CI must not depend on chance: examples are constant in CI.
+# `--hypothesis-profile=thorough` has more.
+for profile, examples in (("short", 20), ("thorough", 100)):
+    settings.register_profile(profile, max_examples=examples, deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("short")
 
 
