@@ -34,9 +34,7 @@ LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over 
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
 MIN_SECOND_PEAK = 0.6  # Least peak of a searched half over the largest: a lower one may stress a free end more
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
-BORDER_ERROR = (
-    0.4  # error at the border of stick and slip, over the square of the pressure's rise / pressure. Accuracy.
-)
+BORDER_ERROR = 0.4  # error at a border of stick and slip, over (rise of the pressure)**2 / pressure. Accuracy.
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 

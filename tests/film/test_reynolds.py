@@ -1,11 +1,10 @@
-"""Film on the faces between cells, and least films between their centres."""
+"""Film on the faces between cells, and flow through them."""
 
 import numpy as np
 import pytest
 
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
-from contactstudy.film.solve import _find_minimum
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 21), open_ends=False)
 
@@ -47,13 +46,6 @@ def test_flow_derivatives_agree_with_differences():
         by_pressure = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
         assert derivatives.by_film.toarray()[:, cell] == pytest.approx(by_film, rel=1e-6, abs=1e-9)
         assert derivatives.by_pressure.toarray()[:, cell] == pytest.approx(by_pressure, rel=1e-6, abs=1e-9)
-
-
-def test_least_film_between_cells_is_positive():
-    centres, edges = np.array([0.0, 1.0, 2.0]), np.array([-0.5, 0.5, 1.5, 2.5])
-    least, position = _find_minimum(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
-    assert 0 < least < 0.01
-    assert 0.5 < position < 1.0
 
 
 @pytest.mark.parametrize("law", ["barus", "roelands"])

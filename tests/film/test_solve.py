@@ -11,6 +11,7 @@ from contactstudy import InvalidInputError
 from contactstudy.film import Asperities, FilmResolution, solve_film
 from contactstudy.film.levels import RESOLUTION, moes_line
 from contactstudy.film.line_contact import solve_line
+from contactstudy.film.solve import _find_minimum
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
 
@@ -323,3 +324,10 @@ def test_unsettled_window_raises(name: str, length: float) -> None:
 def test_barus_oil_above_its_pressures_warns(crowned):
     with pytest.warns(cs.MagnitudeWarning, match=r"viscosity_law = 'barus' at 1.*e\+09 Pa .* exp\(7\) times"):
         coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN), start=crowned)
+
+
+def test_least_film_between_cells_is_positive():
+    centres, edges = np.array([0.0, 1.0, 2.0]), np.array([-0.5, 0.5, 1.5, 2.5])
+    least, position = _find_minimum(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
+    assert 0 < least < 0.01
+    assert 0.5 < position < 1.0
