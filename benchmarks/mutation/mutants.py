@@ -144,7 +144,7 @@ def _between(source: str, start: int, sign: str) -> int:
 
 def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
     """All changes of the sources of some packages, in order."""
-    files = sorted(path for package in packages for path in (root / "contactstudy" / package).glob("*.py"))
+    files = sorted(path for package in packages for path in (root / "contactstudy" / package).rglob("*.py"))
     return [
         mutant
         for path in files

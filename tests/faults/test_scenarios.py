@@ -42,6 +42,7 @@ def test_faults_hold(undisturbed: xr.Dataset) -> None:
     for row in (
         scenarios.damaged_files(undisturbed, len(scenarios.DAMAGES)),
         scenarios.kills(undisturbed, 1),
+        scenarios.kills(undisturbed, 1, workers=2),
         scenarios.clock_steps(undisturbed, 1),
         hosts.two_systems(undisturbed, 1),
     ):

@@ -11,6 +11,9 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean_of_root, _opposite_face, moment_loads
 
 
+WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
+
+
 def smooth_form(cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> ShapedLoad:
     """Load with its own shape: the ratio is 1."""
     return SmoothLoad.of(cells, edges, extends_beyond=extends_beyond).shape_loads(cells)
@@ -53,6 +56,7 @@ def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatA
     widths = np.diff(edges)
     total = smooth.integral(edges[-1:])[:, 0]
     assert np.allclose(total, loads @ widths, atol=1e-6)
+    assert np.allclose(smooth.middle[loads != 0], 1.0, atol=1e-6)
     fine = np.linspace(edges[0], edges[-1], 301)
     means = smooth.means(fine)
     assert np.abs(means).max() <= 2.0 * np.abs(loads).max() + 1e-12
@@ -65,9 +69,11 @@ def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatA
 def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    original = smooth_form(loads, edges, extends_beyond=True).means(fine)
-    mirrored = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
-    assert np.allclose(original, mirrored[:, ::-1], atol=1e-9)
+    original = smooth_form(loads, edges, extends_beyond=True)
+    mirrored = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True)
+    assert np.allclose(original.means(fine), mirrored.means(edges[-1] - fine[::-1])[:, ::-1], atol=1e-9)
+    couplings = (load.shape.coupled_to_next[:, :-1] for load in (original, mirrored))
+    assert np.array_equal(next(couplings), next(couplings)[:, ::-1])
 
 
 def test_uniform_load_ends_in_step() -> None:
@@ -140,6 +146,55 @@ def test_moments_match_narrow_cells(row: tuple[FloatArray, FloatArray], extends_
         assert np.allclose(computed @ centres, total[:, -1], atol=2e-3)
 
 
+@settings(max_examples=30)
+@given(row=rows(), seed=st.integers(0, 1000))
+def test_ratio_multiplies_shape(row: tuple[FloatArray, FloatArray], seed: int) -> None:
+    """Integrals of a shape times a ratio that is linear in each half of a cell, against narrow cells."""
+    loads, edges = row
+    ratio = np.random.default_rng(seed).uniform(-1.0, 1.0, (3, *loads.shape))
+    shape = SmoothLoad.of(loads, edges)
+    load = ShapedLoad(shape, *ratio)
+    part_count = 400
+    fraction = (np.arange(part_count) + 0.5) / part_count
+    fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * (fraction - fraction[0])).ravel(), edges[-1])
+    ones = np.ones_like(loads)
+    forces = np.diff(ShapedLoad(shape, ones, ones, ones).integral(fine), axis=1).reshape(*loads.shape, part_count)
+    first, middle, last = ratio[..., None]
+    half = 2 * fraction - 1
+    parts = forces * np.where(half < 0, middle + (middle - first) * half, middle + (last - middle) * half)
+    assert np.allclose(load.cell_means * np.diff(edges), parts.sum(axis=2), atol=2e-5)
+    assert np.allclose(load.moments, (parts * 0.5 * half * np.diff(edges)[:, None]).sum(axis=2), atol=2e-5)
+    to_thirds = edges[:-1] + np.diff(edges) * fraction[part_count // 3] - 0.5 * np.diff(edges) / part_count
+    before = np.pad(parts.sum(axis=2).cumsum(axis=1), ((0, 0), (1, 0)))[:, :-1]
+    expected = before + parts[..., : part_count // 3].sum(axis=2)
+    assert np.allclose(load.integral(to_thirds), expected, atol=1e-4)
+
+
+@settings(max_examples=60)
+@given(row=rows(), seed=st.integers(0, 1000))
+def test_load_of_another_shape_keeps_force_and_bound(row: tuple[FloatArray, FloatArray], seed: int) -> None:
+    loads, edges = row
+    ratio = np.random.default_rng(seed).uniform(0.2, 1.0, loads.shape)
+    load = SmoothLoad.of(loads, edges).shape_loads(ratio * loads)
+    forces = load.cell_means * np.diff(edges)
+    assert np.allclose(forces.sum(axis=1), (ratio * loads) @ np.diff(edges), atol=1e-9)
+    for values in (load.first, load.middle, load.last):
+        assert values[loads != 0].max(initial=0.0) <= 1 + 1e-9
+    # The ratio is continuous inside the load, between loads of similar size.
+    near, far = np.abs(loads[:, :-1]), np.abs(loads[:, 1:])
+    similar = (loads[:, :-1] * loads[:, 1:] > 0) & (np.minimum(near, far) > 0.8 * np.maximum(near, far))
+    coupled = load.shape.coupled_to_next
+    similar &= ~(coupled[:, :-1] | coupled[:, 1:] | np.pad(coupled[:, :-2], ((0, 0), (1, 0))))
+    assert np.allclose(load.last[:, :-1][similar], load.first[:, 1:][similar], atol=1e-12)
+
+
+def test_load_where_the_shape_is_zero_is_uniform() -> None:
+    edges = np.append(0.0, np.cumsum(WIDTHS))
+    shape, load = np.array([[0.0, 0, 1, 2, 3, 2, 1, 0, 0]]), np.array([[0.5, 0, 1, 1, 1, 1, 1, 0, 0.7]])
+    means = SmoothLoad.of(shape, edges).shape_loads(load).means(np.linspace(edges[0], edges[1], 5))[0]
+    assert means == pytest.approx(0.5)
+
+
 def test_load_vanishes_outside_edges() -> None:
     edges = np.array([0.0, 1.0, 2.5, 3.0])
     smooth = smooth_form(np.array([[1.0, 2.0, 3.0]]), edges)
@@ -156,7 +211,10 @@ def root(edges: FloatArray, border: float) -> FloatArray:
     return np.diff(-2 / 3 * np.maximum(border - edges, 0.0) ** 1.5)
 
 
-WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
+def assert_linear_square(shape: SmoothLoad, cell: int) -> None:
+    first, middle, last = (values[0, cell] ** 2 for values in (shape.first, shape.middle, shape.last))
+    assert middle == pytest.approx(0.5 * (first + last))
+    assert shape.knot[0, cell] == 0.5
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
@@ -172,6 +230,8 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
     assert smooth.integral(edges[6:8])[0] / factor == pytest.approx([forces.sum() - 0.09, forces.sum()], abs=0.02)
     assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
     assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
+    assert smooth.middle[0, 4:7] == pytest.approx(1.0)
+    assert_linear_square(smooth.shape, 5)
     # The load does not extend without the option, at the end of a row, or next to another load.
     adjacent = np.where(np.arange(9) == 7, 1.0, loads)
     for row, extends_beyond in ((loads, False), (adjacent, True), (loads[:6], True)):
@@ -191,6 +251,8 @@ def test_narrow_last_cell_shares_force(moved_fraction: float, factor: float) -> 
     smooth = smooth_form(factor * forces[None] / WIDTHS, edges)
     assert np.abs(smooth.means(fine)[0] / factor - root(fine, border) / np.diff(fine)).max() < 0.05
     assert smooth.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
+    assert smooth.middle[0, 3:6] == pytest.approx(1.0)
+    assert_linear_square(smooth.shape, 4)
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
