@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean_of_root, _opposite_face, moment_loads
 
-
 WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
 
 
@@ -252,6 +251,9 @@ def test_narrow_last_cell_shares_force(moved_fraction: float, factor: float) -> 
     assert np.abs(smooth.means(fine)[0] / factor - root(fine, border) / np.diff(fine)).max() < 0.05
     assert smooth.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
     assert smooth.middle[0, 3:6] == pytest.approx(1.0)
+    assert np.flatnonzero(smooth.shape.coupled_to_next).tolist() == [4]
+    mirrored = SmoothLoad.of((forces / WIDTHS)[None, ::-1], edges[-1] - edges[::-1])
+    assert np.flatnonzero(mirrored.coupled_to_next).tolist() == [3]
     assert_linear_square(smooth.shape, 4)
 
 
