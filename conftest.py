@@ -25,7 +25,7 @@ os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 
 # Times depend on the machine, so no example has a deadline. CI must not depend on chance: examples are constant in CI.
 # `--hypothesis-profile=thorough` has more.
-for profile, examples in (("short", 20), ("thorough", 100)):
+for profile, examples in (("short", 20), ("thorough", 60)):
     settings.register_profile(profile, max_examples=examples, deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("short")
 

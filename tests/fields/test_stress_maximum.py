@@ -252,7 +252,7 @@ def test_overshooting_polynomials_keep_sampled_maximum() -> None:
         body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
     assert float(computed["peak_von_mises"]) == pytest.approx(stress_at_maximum, rel=5e-3)
-    fine = solve(case, accuracy=0.002, x=[1e-3], y=[0.0], z=[1e-5])
+    fine = solve(case, accuracy=0.003, x=[1e-3], y=[0.0], z=[1e-5])
     assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 

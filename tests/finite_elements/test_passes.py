@@ -57,13 +57,11 @@ def test_radial_return_tangent() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "step"), [("settling", 1 / 8), ("flowing_sliding", 1 / 4)])
-def test_coarse_mesh(name: str, step: float) -> None:
-    reference = load_reference(PASSES_FILE, name)
-    result = solve_reference(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=step))
+def test_coarse_mesh() -> None:
+    reference = load_reference(PASSES_FILE, "flowing_sliding")
+    result = solve_reference(PASSES_CASES["flowing_sliding"], replace(PRODUCTION, width=1.0, step=1 / 4))
     size = float(np.abs(reference["sigma_xx"]).max())
     assert np.abs(result["sigma_xx"].values - reference["sigma_xx"].values).max() < 0.15 * size
     shear, expected = (dataset["plastic_strain_yz_young"].sum("z").values for dataset in (result, reference))
     # Flow accumulates over the passes, with the errors of a coarse mesh.
-    tolerance = 0.3 if name.startswith("flowing") else 0.15
-    assert shear == pytest.approx(expected, abs=tolerance * float(np.abs(expected).max()))
+    assert shear == pytest.approx(expected, abs=0.3 * float(np.abs(expected).max()))

@@ -24,14 +24,14 @@ def look_at(rng: Random, *, refined: bool) -> None:
 
 
 @pytest.mark.fuzz
-@settings(SHORT, max_examples=8)
+@settings(SHORT, max_examples=6)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_given_cells(rng: Random) -> None:
     look_at(rng, refined=False)
 
 
 @pytest.mark.fuzz
-@settings(SHORT, max_examples=3)
+@settings(SHORT, max_examples=2)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_refined_cells(rng: Random) -> None:
     look_at(rng, refined=True)
