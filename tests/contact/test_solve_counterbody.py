@@ -180,17 +180,27 @@ def test_exchanged_bodies_have_equal_pressure():
     assert np.abs(pressure - variant.pressure.values).max() < 2e-6 * pressure.max()
 
 
-def test_equal_flush_bodies_have_equal_displacements():
+@pytest.mark.parametrize("load_position", [4.0, 4.8])
+def test_equal_flush_bodies_have_equal_displacements(load_position: float):
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
-    case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL), max_pressure=1.5e9)
+    position = load_position * HALF_WIDTH
+    roller = Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, load_position=position)
     soft = Case(
         body=FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(STEEL.young / 2, 0.3)),
         roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
         max_pressure=1.5e9,
+        load_position=position,
     )
-    pressure, rigid = (solve(variant, stresses=False, accuracy=0.05).pressure.values for variant in (case, soft))
-    np.testing.assert_allclose(pressure, rigid, atol=1e-6 * rigid.max())
-    np.testing.assert_allclose(pressure, pressure[::-1], atol=1e-6 * rigid.max())
+    elastic, rigid = (solve(variant, stresses=False, accuracy=0.05) for variant in (case, soft))
+    largest = float(rigid.pressure.max())
+    np.testing.assert_allclose(elastic.pressure.values, rigid.pressure.values, atol=1e-6 * largest)
+    assert float(elastic.approach) == pytest.approx(float(rigid.approach), rel=1e-6)
+    assert float(elastic.tilt) == pytest.approx(float(rigid.tilt), rel=1e-5, abs=1e-9)
+    if load_position == 4.0:
+        np.testing.assert_allclose(elastic.pressure, elastic.pressure[::-1], atol=1e-6 * largest)
+    else:
+        assert abs(float(rigid.tilt)) > 1e-5
 
 
 @pytest.mark.parametrize("distance", [-1.5, 1.0])

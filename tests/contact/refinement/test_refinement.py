@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.refinement.laws import RIGID, EndLaw
 from contactstudy.contact.refinement.refinement import (
+    CORNER_GROWTH,
     EDGE_COLUMN_WIDTH,
     END_COLUMN_WIDTH,
     MAX_COLUMNS,
@@ -455,3 +456,19 @@ def test_rough_contact_uses_second_threshold() -> None:
     assert repeated.edges == pytest.approx(fine.edges)
     assert repeated.first_edges == pytest.approx(coarse.edges)
     assert coarse.laws == [None, None]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_pressure_at_corner_is_refined_on_both_sides(side: int) -> None:
+    """The logarithm at a corner makes the peak of its half infinite, and the columns on both sides narrow."""
+    corner = (6.3, LENGTH - 6.3)[side]
+    cornered_shape = replace(shape(), corners=(corner,))
+    result = refine_columns(make_column_solver(lambda x: 3 - 0.5 * np.log(np.abs(x - corner))), cornered_shape, 0.01)
+    peaks = result.values["peak_pressure"]
+    assert np.isinf(peaks[side])
+    assert np.isfinite(peaks[1 - side])
+    widths, distances = np.diff(result.edges), np.abs(result.edges - corner)
+    outer_distances = np.maximum(distances[:-1], distances[1:])
+    is_near = outer_distances < HALF_WIDTH
+    bounds = np.maximum(MIN_END_COLUMN * HALF_WIDTH, CORNER_GROWTH * outer_distances)
+    assert (widths <= bounds)[is_near].all()

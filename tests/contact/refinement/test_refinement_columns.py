@@ -137,3 +137,15 @@ def test_first_columns_contain_narrow_ridges(position: float, width: float) -> N
 def test_close_corners_are_edges() -> None:
     corners = (13.0, 13.001, 13.002)
     assert set(corners) <= set(first_edges(replace(axial_shape(SHAPES["chamfer"]), corners=corners)).tolist())
+
+
+@pytest.mark.parametrize("corner", [0.4, 7.43, 12.77])
+def test_corner_moves_neighbouring_edges_only(corner: float) -> None:
+    without = first_edges(axial_shape(np.zeros_like))
+    edges = first_edges(replace(axial_shape(np.zeros_like), corners=(corner,)))
+    widest = np.diff(without).max()
+    distant_edges = without[np.abs(without - corner) > 0.25 * widest]
+    assert corner in edges
+    assert np.isin(distant_edges, edges).all()
+    column = np.searchsorted(edges, corner)
+    assert min(np.diff(edges)[column - 1 : column + 1]) >= 0.2 * np.diff(without)[np.searchsorted(without, corner) - 1]
