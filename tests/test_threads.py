@@ -6,8 +6,10 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from threading import Event
 
+import numpy as np
 import pytest
 import xarray as xr
 from threadpoolctl import threadpool_limits
@@ -33,9 +35,23 @@ ROLLING = cs.Case(
     friction=0.2,
     motion=cs.Rolling(lateral_creepage=1e-3),
 )
+LUBRICATED = replace(
+    CASE,
+    max_pressure=4e8,
+    lubricant=cs.Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="roelands"),
+    motion=cs.Sliding(body_speed=1.0, roller_speed=1.0),
+)
+FILM_CELLS = cs.film.FilmResolution(finest=1.1, finest_share=0.24, inner=0.32, growth=0.2, columns=0.24)
+CROWNED = cs.Case(
+    body=cs.HalfSpace(material=STEEL),
+    roller=cs.Roller(radius=5e-3, length=0.3e-3, profile=cs.profiles.FullCrown(crown_radius=5e-3)),
+    load=20.0,
+)
 GRID = cs.choose_grid(CASE, cells_x=8, cells_y=8)
 ROLLING_GRID = cs.choose_grid(ROLLING, cells_x=6, cells_y=8)
 POINTS = {"x": [0.0, 1e-4], "y": [0.0, 2e-5], "z": [0.0, 1e-5, 5e-5]}
+PASSAGE = {"x": np.linspace(0.0, 0.5e-3, 3), "y": np.linspace(-2e-4, 2e-4, 9), "z": [1e-5, 3e-5, 6e-5]}
+APPROACHES, TILTS = 1e-6 * np.geomspace(0.5, 2.0, 5), np.linspace(-2e-3, 2e-3, 5)
 
 
 class Controller:
@@ -98,6 +114,9 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
     solution = cs.solve(CASE, GRID, **POINTS)
     pressure = solution["pressure"]
     gap = solution["initial_gap"]
+    passage = cs.solve(CASE, GRID, **PASSAGE)
+    film = cs.solve_film(LUBRICATED, accuracy=0.2, resolution=FILM_CELLS)
+    elastic_plastic = cs.plasticity.ElasticPlastic(yield_stress=4e8)
     thermal = cs.heat.ThermalProperties(conductivity=50.0, density=7850.0, specific_heat=460.0)
     return {
         "solve": lambda: cs.solve(CASE, GRID, **POINTS),
@@ -110,6 +129,13 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
         "equivalent_loads": lambda: cs.equivalent_loads(BODY, pressure, 0.2),
         "roller_stress": lambda: cs.roller_stress(CASE, pressure, **POINTS),
         "wear_in": lambda: cs.wear.wear_in(CASE, 1e-17, distance=1e3, grid=GRID),
+        "solve_film": lambda: cs.solve_film(LUBRICATED, accuracy=0.2, resolution=FILM_CELLS),
+        "film_traction": lambda: cs.film.film_traction(LUBRICATED, film, [0.01, 0.1]),
+        "contact_law": lambda: cs.bearing.contact_law(CROWNED, TILTS, APPROACHES, accuracy=0.1).table,
+        "slice_model": lambda: cs.bearing.slice_model(CASE),
+        "lamina_factors": lambda: cs.bearing.lamina_factors(solution),
+        "shakedown": lambda: cs.fatigue.shakedown(passage),
+        "residual_stress": lambda: cs.plasticity.residual_stress(passage, BODY, elastic_plastic, passes=1),
         "flash_temperature": lambda: cs.heat.flash_temperature(CASE, solution, body=thermal, roller=thermal),
     }
 

@@ -316,9 +316,7 @@ class _SplitRange(NamedTuple):
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
         if self.start == self.stop:
             return np.zeros((0, fine.count))
-        replaced_columns = slice(self.start + 1, self.stop - 1)
-        is_summed = np.ones(fine.edges.size - 1, bool)
-        is_summed[replaced_columns] = not fine.is_split.any()
+        is_summed = np.diff(np.searchsorted(self.inserted, fine.edges)) < 2  # columns that are not split
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
         return fine.moment_loads(is_summed)[np.searchsorted(fine.edges, midpoints) - 1]
 

@@ -80,19 +80,9 @@ class FineCells:
         return self._smooth.shape_loads(self.cell_loads.T)
 
     @cached_property
-    def is_split(self) -> BoolArray:
-        """Columns that are split along x: all, or none under a flat shape."""
-        shape = self.shape_cells
-        edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
-        fine_means = shape._load_along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
-        deviation = np.abs(fine_means - shape.cell_loads.T[..., None]).max(axis=(0, 2))
-        # Tractions may vary in columns under a flat shape, and keep their bound if all columns are split.
-        return np.full(deviation.shape, (deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()).any())
-
-    @cached_property
     def x_edges(self) -> FloatArray:
         """Edges of the fine cells along x and of their nearest images, metres."""
-        return mirror_edges(_split_edges(self.grid.x_edges, self.is_split), self.extent)
+        return mirror_edges(_split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool)), self.extent)
 
     @cached_property
     def step_edges(self) -> FloatArray:
@@ -131,7 +121,7 @@ class FineCells:
 
     def is_refined_along_x(self, z: FloatArray) -> BoolArray:
         """Whether uniform cells along x are refined at depths `z`."""
-        return np.asarray((z < MAX_REFINED_DEPTH * self.grid.dx) & self.is_split.any())
+        return np.asarray(z < MAX_REFINED_DEPTH * self.grid.dx)
 
     def column_means(self, edges: list[FloatArray]) -> FloatArray:
         """Means over the columns between the edges of each array: array (column, y); edges may lie among images."""
@@ -164,8 +154,6 @@ class FineCells:
 
     def coarsen_x(self, loads: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
         """Load on uniform cells, whole along x with the moments of the fine cells, and the grid."""
-        if not self.is_split.any():
-            return loads, grid
         margin, has_end = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
         padded = np.pad(loads, ((margin, margin), (0, 0)), mode="symmetric")
         for has_image, loads_beyond in zip(has_end, (padded[:margin], padded[-margin:]), strict=True):
@@ -180,11 +168,10 @@ class FineCells:
 
     def end_load(self) -> tuple[FloatArray, Grid]:
         """Load on cells that are split along y, and along x near the ends, over the whole grid."""
-        is_split = np.zeros(self.is_split.size, bool)
+        is_split = np.zeros(self.grid.cells_x, bool)
         for end in self.extent:
             if np.isfinite(end):
                 is_split[slice(*resolved_columns(self.grid.x_edges, end))] = True
-        is_split &= self.is_split
         edges = _split_edges(self.grid.x_edges, is_split)
         is_unsplit = add_images(~is_split, 1, self.extent)
 
@@ -202,9 +189,9 @@ class FineCells:
         return cells, Grid.between(edges, (low - margin, high + margin), cells.shape[1])
 
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
-        """Load on uniform cells split along y, and along x where the shape is not flat, and the grid."""
+        """Load on uniform cells split along x and y, and the grid."""
         # Points at the distance `offset` along y from the middles of cells are in the middles of fine cells.
-        edges = _split_edges(self.grid.x_edges, self.is_split)
+        edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
         return self._refine_along_y(edges, self.column_means([edges]), self.shape_cells.column_means([edges]), offset)
 
     def _refine_along_y(

@@ -25,6 +25,8 @@ determine the end of a load."""
 MIN_NEIGHBOUR_RATIO = 0.5
 """Least ratio of the shape's means in neighbouring cells with a continuous ratio between them. Accuracy."""
 
+EMPTY_LEVEL = 1e-12  # uniform shape in cells without a shape, over the largest mean. Accuracy.
+
 MIN_LOADED_FRACTION = 0.5
 """Loaded part of the last cell below which the last two cells share their force. Accuracy: the discrete contact puts
 too little force into a last cell with a smaller loaded part, and too much into its neighbour."""
@@ -80,17 +82,15 @@ class SmoothLoad:
 
     def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
         """Return `cell_loads` (row, cell) of this shape: the shape times a ratio, linear between centres and faces."""
-        # Where the shape is 0, the load equals the ratio. The ratio on a face is a mean of the ratios at the centres of
-        # both cells: no ratio is larger than all of these, and tractions keep their bound. The cells keep the sum of
-        # their forces; coupled cells have one ratio.
+        # The ratio on a face is a mean of the ratios at both cells' centres: no ratio is larger than all of these, and
+        # tractions keep their bound. The cells keep the sum of their forces; coupled cells have one ratio.
         widths, count = np.diff(self.edges), cell_loads.shape[1]
         force = self.moments_up_to(np.arange(count), self.edges[1:])[0]
         is_empty = force == 0
-        force, cell_force = np.where(is_empty, widths, force), cell_loads * widths
-        sign, first, middle, last = (
-            np.where(is_empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
-        )
-        shape = replace(self, sign=sign, first=first, middle=middle, last=last)
+        level = EMPTY_LEVEL * float(np.abs(force / widths).max(initial=0.0)) or 1.0
+        force, cell_force = np.where(is_empty, level * widths, force), cell_loads * widths
+        first, middle, last = (np.where(is_empty, level, values) for values in (self.first, self.middle, self.last))
+        shape = replace(self, sign=np.where(is_empty, 1.0, self.sign), first=first, middle=middle, last=last)
         is_coupled_back = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
         group_force = force
         if self.coupled_to_next.any():
@@ -153,10 +153,11 @@ class ShapedLoad:
     def _cell_moments(self) -> tuple[FloatArray, FloatArray]:
         """Force of each cell, and first moment about the cell's start: arrays (row, cell)."""
         cell = np.arange(self.edges.size - 1)
-        return self._moments_up_to(cell, self.edges[1:])
+        force, moment, _, _ = self._moments_up_to(cell, self.edges[1:])
+        return force, moment
 
-    def _moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Force and first moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
+    def _moments_up_to(self, cell: IntArray, x: FloatArray) -> FloatArray:
+        """Force and first moment, of the load and of the shape, between each `cell`'s start and `x`: (4, row, x)."""
         half_width = 0.5 * np.diff(self.edges)[cell]
         half = self.shape.moments_up_to(cell, np.minimum(x, self.edges[cell] + half_width))
         whole = self.shape.moments_up_to(cell, x)
@@ -170,7 +171,7 @@ class ShapedLoad:
             + (first_rise - rise) * half[order + 1]
             for order in (0, 1)
         )
-        return force, moment
+        return np.stack([force, moment, *whole[:2]])
 
     @property
     def cell_means(self) -> FloatArray:
@@ -194,25 +195,23 @@ class ShapedLoad:
         return np.asarray(np.diff(self.integral(edges), axis=1) / np.diff(edges))
 
     def equivalent_means(self, edges: FloatArray) -> FloatArray:
-        """Return loads on cells between other edges, with forces and first moments of the load: array (row, cell)."""
+        """Return loads on cells between other edges, with the load's forces at the shape's centroids: (row, cell)."""
+        # With the moments of the ratio a traction would exceed its bound.
         inner_edges = self.edges[(self.edges > edges[0]) & (self.edges < edges[-1])]
         points = np.union1d(edges, inner_edges)
         midpoints = 0.5 * (points[1:] + points[:-1])
         cell = np.clip(np.searchsorted(self.edges, midpoints, side="right") - 1, 0, self.edges.size - 2)
-        # Differences of sums over all cells would lose digits.
-        sums_to_points, sums_to_start = self._moments_up_to(cell, points[1:]), self._moments_up_to(cell[:1], points[:1])
-        cell_starts = np.append(True, np.diff(cell) > 0)
         cell_of_point = np.clip(np.searchsorted(edges, midpoints, side="right") - 1, 0, edges.size - 2)
         first_points = np.flatnonzero(np.append(True, np.diff(cell_of_point) > 0))
-        force, moment = (
-            sums - np.where(cell_starts, 0.0, np.concatenate([start_sums, sums[:, :-1]], axis=1))
-            for sums, start_sums in zip(sums_to_points, sums_to_start, strict=True)
-        )
-        force[:, 0] -= sums_to_start[0][:, 0]
-        moment[:, 0] -= sums_to_start[1][:, 0]
-        moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * force
-        force, moment = (np.add.reduceat(values, first_points, axis=1) for values in (force, moment))
-        return force / np.diff(edges) + moment_loads(edges, moment)
+        # Differences of sums over all cells would lose digits.
+        sums, sums_to_start = self._moments_up_to(cell, points[1:]), self._moments_up_to(cell[:1], points[:1])
+        sums_before = np.concatenate([sums_to_start, sums[..., :-1]], axis=-1)
+        force, _, shape_force, moment = sums - np.where(np.append(False, np.diff(cell) > 0), 0.0, sums_before)
+        moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * shape_force
+        parts = np.stack([force, moment, np.sign(shape_force) * force, np.abs(shape_force)])
+        force, moment, aligned_force, size = np.add.reduceat(parts, first_points, axis=-1)
+        ratio = aligned_force / np.where(size > 0, size, 1.0)
+        return np.asarray(force / np.diff(edges) + moment_loads(edges, ratio * moment))
 
 
 def _group_sums(values: FloatArray, start: IntArray) -> FloatArray:

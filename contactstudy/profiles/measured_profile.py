@@ -250,10 +250,7 @@ class Measured(Shape):
 
     @cached_property
     def _interpolation(self) -> Any:
-        from scipy.interpolate import CubicHermiteSpline
-
-        x, drops = self._from_middle, self._filtered
-        spline = CubicHermiteSpline(x, drops, _limit_slopes(x, drops))
+        spline = interpolate_with_limited_slopes(self._from_middle, self._filtered)
         extrema = spline.derivative().roots(discontinuity=False, extrapolate=False)
         spline.c[3] -= min(0.0, float(np.min(spline(extrema[np.isfinite(extrema)]), initial=0.0)))
         return spline
@@ -315,8 +312,10 @@ class _HarmonicMean(Measured):
         return self
 
 
-def _limit_slopes(x: FloatArray, drops: FloatArray) -> FloatArray:
-    """Slopes of the parabolas through three points, limited by Huynh's constraint M3."""
+def interpolate_with_limited_slopes(x: FloatArray, drops: FloatArray) -> Any:
+    """Cubic spline with slopes of the parabolas through three points, limited by Huynh's constraint M3."""
+    from scipy.interpolate import CubicHermiteSpline
+
     steps = np.diff(x)
     secants = np.diff(drops) / steps
     bends = np.diff(secants) / (steps[1:] + steps[:-1])
@@ -327,7 +326,7 @@ def _limit_slopes(x: FloatArray, drops: FloatArray) -> FloatArray:
     quadratic = np.concatenate([right_slopes[:1], _minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
     monotone = np.concatenate([secants[:1], _minmod(secants[:-1], secants[1:]), secants[-1:]])
     limits = np.copysign(np.maximum(3 * np.abs(monotone), 1.5 * np.abs(quadratic)), quadratic)
-    return _minmod(slopes, np.where(quadratic == 0, 0.0, limits))
+    return CubicHermiteSpline(x, drops, _minmod(slopes, np.where(quadratic == 0, 0.0, limits)))
 
 
 def _minmod(first: FloatArray, second: FloatArray) -> FloatArray:

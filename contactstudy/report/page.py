@@ -52,6 +52,8 @@ HEADINGS = {  # Columns of the table and their headings
     "peak_von_mises_x": "at x",
     "peak_von_mises_z": "at z",
     "corner_x": "corner at x",
+    "corner_slope": "slope of the corner",
+    "corner_intensity": "intensity of the corner",
     "corner_distance": "d0 of the corner",
     "end_intensity_first": "K at end I",
     "end_intensity_last": "K at end II",
@@ -358,8 +360,8 @@ def _number(table: Summary, name: str) -> str:
         return NOT_LOADED
     if np.isinf(number.value):
         return SINGULAR
-    is_position = name.endswith(("_x", "_z"))
-    return number.text if is_position or np.isfinite(number.error) else f"{number.text} ({NOT_ESTIMATED})"
+    is_exact = name.endswith(("_x", "_z", "corner_slope", "corner_intensity"))
+    return number.text if is_exact or np.isfinite(number.error) else f"{number.text} ({NOT_ESTIMATED})"
 
 
 def _has_number(rows: list[Row], name: str) -> bool:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator, make_interp_spline
+from scipy.interpolate import make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
@@ -18,7 +19,7 @@ from contactstudy.case.case import GAP_NODES, Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum
-from contactstudy.profiles.measured_profile import Measured
+from contactstudy.profiles.measured_profile import Measured, interpolate_with_limited_slopes
 
 ROUNDING = 1e-9  # Rounding of a relative distance
 WORN_ATTRIBUTES = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ
@@ -173,9 +174,9 @@ def _fit_profile(
     return profile
 
 
-def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInterpolator]:
-    """Monotone interpolation of the worn shape, without a ridge, next to the first unworn columns."""
-    borders: list[PchipInterpolator] = []
+def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> list[Any]:
+    """Interpolation of the worn shape, without a ridge, next to the first unworn columns."""
+    borders: list[Any] = []
     worn_columns = np.flatnonzero(depth > 0)
     if not worn_columns.size:
         return borders
@@ -186,7 +187,7 @@ def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> li
             indices = np.sort(first_unworn + step * np.arange(5))
             indices = indices[(indices >= 0) & (indices < depth.size)]
             if np.isfinite(shape[indices]).all() and indices.size > 2:
-                borders.append(PchipInterpolator(columns.midpoints[indices], shape[indices]))
+                borders.append(interpolate_with_limited_slopes(columns.midpoints[indices], shape[indices]))
     return borders
 
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.fine_cells import (
     MAX_REFINED_DEPTH,
     MIN_RESOLVED_WIDTH,
@@ -17,6 +19,7 @@ from contactstudy.kernels.fine_cells import (
     coarsen,
     resolved_columns,
 )
+from contactstudy.kernels.load import Load
 from contactstudy.kernels.smooth_load import SmoothLoad
 
 EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
@@ -57,7 +60,6 @@ def test_results_scale_with_unit_and_position(ends: int, image_sign: int, edges:
         variant = make_fine_cells(
             edges=edges, image_sign=image_sign, ends=ends, offset=position, unit=unit, pressure=pressure
         )
-        assert variant.is_split.tolist() == baseline.is_split.tolist()
         for name in ("x_edges", "edges", "step_edges"):
             assert getattr(variant, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), name
         for computed, expected in ((variant.far_load, baseline.far_load), (variant.cell_loads, baseline.cell_loads)):
@@ -81,7 +83,6 @@ def test_results_scale_with_unit_and_position(ends: int, image_sign: int, edges:
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
 def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     cells = make_fine_cells(edges=edges)
-    assert cells.is_split.any()
     assert cells.is_refined_along_y(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
         True,
         True,
@@ -90,16 +91,10 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     ]
     load = np.where(np.abs(cells.grid.y) < 0.7, 1.0, 0.0) * np.ones(cells.grid.shape)
     flat_cells = FineCells(load=load, shape=load, grid=cells.grid)
-    assert not flat_cells.is_split.any()
-    assert not flat_cells.is_refined_along_x(np.zeros(1)).any()
-    assert cells.is_refined_along_x(cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [
-        True,
-        False,
-    ]
-    assert flat_cells.is_refined_along_y(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [
-        True,
-        False,
-    ]
+    factors = MAX_REFINED_DEPTH * np.array([0.99, 1.01])
+    for refined_cells in (cells, flat_cells):
+        assert refined_cells.is_refined_along_x(cells.grid.dx * factors).tolist() == [True, False]
+        assert refined_cells.is_refined_along_y(cells.grid.dy * factors).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("image_sign", [1, -1])
@@ -222,14 +217,37 @@ def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
         assert np.array_equal(first_values, 2 * half_values)
 
 
-@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_columns_of_an_uneven_load_are_split(unit: float) -> None:
-    """One column with a deviation above 0.3 % of the largest load splits all columns, in any unit."""
-    grid = Grid.between(EDGES, (-1.2, 1.2), 12)
-    even_profile = 1 + 1e-4 * grid.x
-    for profile, is_split in ((even_profile, False), (even_profile - 0.5 * np.maximum(grid.x - 2.5, 0.0), True)):
-        load = unit * profile[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
-        assert FineCells(load=load, shape=load, grid=grid).is_split.tolist() == grid.cells_x * [is_split]
+@pytest.mark.parametrize("crown", [0.0, 0.04])
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+def test_tractions_on_the_top_keep_their_bound(edges: FloatArray, crown: float) -> None:
+    """The traction is at most the pressure, at any ratios of the cells and any position, also under a flat pressure."""
+    grid = Grid.between(edges, (-1.2, 1.2), 20)
+    middle = 0.5 * (edges[0] + edges[-1])
+    pressure = np.sqrt(np.maximum(1 - crown * (grid.x[:, None] - middle) ** 2 - grid.y**2, 0.0))
+    rng = np.random.default_rng(0)
+    bent = np.clip(np.abs(grid.y - 0.3) * 2 + 0.1 * grid.x[:, None], 0.0, 1.0)
+    x = np.concatenate([grid.x, (edges[:-1, None] + np.diff(edges)[:, None] * [0.1, 0.3, 0.9]).ravel()])
+    for ratio, angle in (
+        (rng.random(grid.shape) ** 0.2, rng.uniform(0.0, 7.0, grid.shape)),
+        (bent, 0.5 * grid.x[:, None]),
+    ):
+        loads = {
+            Load.NORMAL: pressure,
+            Load.ALONG_X: pressure * ratio * np.cos(angle),
+            Load.ALONG_Y: pressure * ratio * np.sin(angle),
+        }
+        for positions in (grid.x, np.sort(x)):
+            points = Points(positions, np.linspace(-0.95, 0.95, 61), np.zeros(1))
+            top = {
+                load: half_space_field(
+                    values, stress_influence(load, 0.3), grid, points, extent=(-np.inf, np.inf), shape=pressure
+                )
+                for load, values in loads.items()
+            }
+            normal = -top[Load.NORMAL][2]
+            traction = np.hypot(top[Load.ALONG_X][4], top[Load.ALONG_Y][5])
+            is_off_border = normal > 0.05 * normal.max()
+            assert (traction / normal)[is_off_border].max() < 1.0005
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])

@@ -148,6 +148,21 @@ def test_page_of_a_study(page: Page) -> None:
     assert len(page.fetched) == 2
 
 
+@pytest.mark.usefixtures("without_encoding")
+def test_corners_in_the_table_of_a_study(tmp_path: Path) -> None:
+    corner = {"corner_x": 0.1e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8, "corner_distance": 54e-6}
+
+    def solve_corner(case: Case, *arguments, **keywords) -> xr.Dataset:
+        values = corner | {"corner_distance_error": 1.3e-6}
+        return solve_fake(case, *arguments, **keywords).assign(values if case.friction else {})
+
+    run_study(small_study(), tmp_path, workers=0, solver=solve_corner, progress=False)
+    text = read_page(report.write(tmp_path)).text
+    for heading in (pages.HEADINGS[name] for name in corner):
+        assert heading in text
+    assert text.count("0.1 mm 0.02 0.73 GPa 54.0 ± 1.3 µm") == 2
+
+
 def converged_rows(*errors: float) -> list[pages.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]

@@ -135,6 +135,23 @@ def test_intensities_with_different_exponents(tmp_path):
     assert "end_exponent" in study_dataset["end_intensity"].attrs["comment"]
 
 
+def test_corners_of_each_case(tmp_path):
+    """Columns of the law at a corner; a case without a corner has none."""
+    profiles = [{"kind": "chamfer", "width": 0.1e-3, "angle": angle} for angle in (0.02, 0.04)]
+    base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
+    base |= {"body": "half-space", "stresses": False, "accuracy": 0.1, "e_over_a": 3.0}
+    study = small_study(base=base, sweep={"profile": [*profiles, "cylinder"]}, level="summary")
+    assert run_study(study, tmp_path, workers=0).counts == {"ok": 3}
+    opened = open_study(tmp_path)
+    modulus = 210e9 / (1 - 0.3**2)
+    np.testing.assert_allclose(opened.corner_slope, np.tan([0.02, 0.04, np.nan]))
+    np.testing.assert_allclose(opened.corner_intensity, modulus * opened.corner_slope / (2 * np.pi))
+    middle = 3 * opened.hertz_half_width + 0.25e-3
+    np.testing.assert_allclose(np.abs(opened.corner_x - middle), [0.15e-3, 0.15e-3, np.nan])
+    assert (opened.corner_distance_error < 0.3 * opened.corner_distance).values.tolist() == [True, True, False]
+    assert opened.corner_distance.attrs["units"] == "m"
+
+
 def test_reference_depth_of_each_case(tmp_path):
     """Tables of a study show the depths to which approach and tilt of each case refer."""
     base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}

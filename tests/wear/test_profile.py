@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, choose_grid, fatigue, solve
-from contactstudy.profiles import Cylinder
+from contactstudy.checks import FloatArray
+from contactstudy.profiles import Cylinder, FullCrown
 from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
@@ -134,6 +135,24 @@ def test_overhanging_roller_without_a_ridge() -> None:
     depth = worn["wear_depth"].values[-1]
     ends = profile.drop(np.array([-0.15e-3, 0.15e-3]), LENGTH)
     assert ends == pytest.approx(depth[[0, -1]], rel=0.05)
+
+
+@pytest.mark.parametrize("border", [0.02e-3, 0.04e-3, 0.06e-3])
+def test_border_next_to_unworn_columns(border: float) -> None:
+    """A parabola worn off a crown, whose crest is in the first worn columns; harmonic-mean slopes deviate by 5 nm."""
+    radius = 0.02
+    case = worn_case(FullCrown(crown_radius=radius), margin=0.0)
+    x = LENGTH * (np.arange(20) + 0.5) / 20
+
+    def parabola(x: FloatArray) -> FloatArray:
+        return np.maximum(border - x, 0.0) ** 2 / (2 * radius)
+
+    depth = xr.DataArray([parabola(x - 0.5 * LENGTH)], dims=("distance", "x"))
+    pressure = xr.zeros_like(depth).expand_dims(y=[0.0], axis=-1)
+    worn = xr.Dataset({"wear_depth": depth, "pressure": pressure}, {"distance": [1e3], "x": x})
+    x = np.linspace(border - 0.1e-3, border, 201)
+    drop = worn_profile(case, worn).drop(x, LENGTH)
+    assert drop == pytest.approx(x**2 / (2 * radius) + parabola(x), abs=1.2e-9)
 
 
 @pytest.mark.slow
