@@ -13,15 +13,15 @@ import xarray as xr
 from scipy.fft import next_fast_len
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
+from contactstudy.contact.normal.contact import Contact, Shape, contact_operator
 from contactstudy.contact.normal.prescribed_loads import RigidMotion
+from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
@@ -174,13 +174,6 @@ class FilmCase:
     def tilt_centre(self) -> float:
         """Position x, metres, where the approach is independent of the tilt."""
         return self.case.roller_middle if self.case.load_position is None else self.case.load_position
-
-    def line_motion(self, grid: Grid, columns: slice, pressure: FloatArray) -> RigidMotion:
-        """Motion of the reference lines under a pressure over p0 on columns of the grid."""
-        body_load = np.zeros(grid.shape)
-        body_load[columns] = self.pressure_scale * pressure
-        shape = contact_shape(self.dry_case, grid)
-        return shape.line_motions(shape.loads(body_load), body_load).total
 
     @property
     def speed_number(self) -> float:
@@ -350,9 +343,15 @@ class FilmOnCells(NamedTuple):
 
     problem: FilmProblem
     solution: FilmSolution
-    grid: Grid  # uniform cells along y and columns over the whole body
-    columns: slice  # columns of the grid under the roller
+    shape: Shape  # the dry contact on uniform cells along y and columns over the whole body
+    columns: slice  # columns under the roller
     merged: MergedCells  # cells along y
+
+    def line_motion(self, film: FilmCase, pressure: FloatArray, position: float) -> RigidMotion:
+        """Motion of the reference lines under a pressure, its level below a position x, metres."""
+        body_load = np.zeros(self.shape.grid.shape)
+        body_load[self.columns] = film.pressure_scale * self.merged.to_uniform_cells(pressure)
+        return self.shape.line_motions(body_load, position).total
 
 
 def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
@@ -394,7 +393,7 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, 
 def film_on_level(
     film: FilmCase, level: Level, settings: FilmSettings, start: FilmOnCells | xr.Dataset | None = None
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, from the dry contact or from another film."""
+    """Solve for the film on the cells of a level, to its tolerance, from the dry contact or from another film."""
     cells, merged, window = create_cells(film, level)
     a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
     grid = graded_grid(film.case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
@@ -411,54 +410,56 @@ def film_on_level(
 
     unit_load = np.zeros((cells.shape[0], grid.cells_y))
     unit_load[:, 0] = 1.0
-    arm = cells.x - film.tilt_centre / a
+    # The tilt refers to the reference lines, here under the dry contact, the height to the bodies far away.
+    gap = shape.gap.values - RigidMotion(0.0, film.dry_contact.motions.total.tilt).height(grid.x - film.tilt_centre)
+    resultants = shape.prescribed.resultants(grid)
     rough = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=merged.to_centres(shape.gap.values[columns]) / height_scale,
+        gap=merged.to_centres(gap[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
         column_stiffness=merged.compute_stiffness(displace(unit_load)),
         load=film.case.normal_load / (p0 * a**2),
-        lever=None if film.case.load_position is None else arm / np.abs(arm).max(),
+        lever=None if resultants.lever is None else resultants.lever[columns, 0],
         central_film=film.central_film / height_scale,
         asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
         mean_height=None if rough is None else rough.mean_height(height_scale),
     )
     if start is None:
-        dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-        state = _dry_state(film, problem, dry_contact, columns, merged)
+        contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
+        dry = solve_normal(operator, contact)
+        opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
+        # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
+        separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
+        distance = merged.to_centres(opening[columns]) / height_scale + separation
+        motion = np.append(separation, np.zeros(len(dry.motion) - 1)) - np.array(dry.motion) / height_scale
+        state = initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
     elif isinstance(start, xr.Dataset):
         state = _convert_result(film, start, problem)
     else:
         state = _transfer_state(start, problem)
-    # The tilt refers to the reference lines under the pressure of the start, the height to the bodies far away.
-    line_tilt = film.line_motion(grid, columns, merged.to_uniform_cells(state.pressure)).tilt
-    problem = replace(problem, gap=problem.gap - line_tilt * a * arm[:, None] / height_scale)
+    coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
+    solution = solve_newton(problem, state, coarse_settings, steady=start is not None)
+    return FilmOnCells(problem, solution, shape, columns, merged)
+
+
+def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+    """Continue on the same cells, between the reference lines under the film, to the tolerance of the settings."""
+    problem, state = level_film.problem, level_film.solution.state
+
+    def rotate(tilt: float) -> FloatArray:
+        return RigidMotion(0.0, tilt).height(film.half_width * problem.cells.x - film.tilt_centre) / film.height_scale
+
+    problem = replace(
+        problem,
+        gap=problem.gap + rotate(film.dry_contact.motions.total.tilt),
+        displace=lambda load: (
+            level_film.problem.displace(load) - rotate(level_film.line_motion(film, load, film.tilt_centre).tilt)
+        ),
+    )
     state = initial_state(problem, state.pressure, state.motion, state.distance)
-    solution = solve_newton(problem, state, settings, steady=start is not None)
-    return FilmOnCells(problem, solution, grid, columns, merged)
-
-
-def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
-    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
-    state = _transfer_state(level_film, level_film.problem)
-    return level_film._replace(solution=solve_newton(level_film.problem, state, settings, steady=True))
-
-
-def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
-    """First guess: pressure and gap of the dry contact, with the distance at the formula's central film added to it."""
-    pressure = merged.average(dry.pressure[columns]) / film.pressure_scale
-    # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
-    (separation,) = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
-    distance = merged.to_centres(dry.gap[columns]) / film.height_scale + separation
-    motion = np.zeros(len(problem.motions))
-    line_height = dry.motions.total.height(np.array([film.tilt_centre])).item()
-    motion[0] = separation - (dry.approach + line_height) / film.height_scale
-    if film.case.load_position is not None:
-        max_lever = np.abs(problem.cells.x - film.case.load_position / film.half_width).max()
-        motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale
-    return initial_state(problem, pressure, motion, distance)
+    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, steady=True))
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import NamedTuple
 
 import numpy as np
@@ -214,7 +214,6 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
     if start is not None and (refined := _continue_film(film, accuracy, settings, start)) is not None:
         return refined
-    coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     level = film.coarsest_level
     solutions: list[FilmOnCells] = []
     films: list[Films] = []
@@ -223,7 +222,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
     errors = np.full(len(FILM_NAMES), np.inf)
     while True:
         try:
-            solutions.append(film_on_level(film, level, coarse_settings, [start, *solutions][-1]))
+            solutions.append(film_on_level(film, level, settings, [start, *solutions][-1]))
         except StepFailedError:
             if not solutions and start is not None:
                 return _refine(film, accuracy, settings)
@@ -249,17 +248,8 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             x = solutions[-1].problem.cells.x
             minima = (float(x[np.abs(x - position).argmin()]) for position in (films[-1].first_x, films[-1].last_x))
             level = level._replace(closures=[*film.contact_ends, *minima])
-    solutions.append(continue_solution(solutions[-1], settings))
-    return _RefinedFilm(
-        level=level,
-        level_film=solutions[-1],
-        films=compute_films(film, solutions[-1]),
-        errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
-        error=float(errors.max()) / films[-1].central_film,
-        levels=len(films),
-        newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
-        linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
-    )
+    solutions.append(continue_solution(film, solutions[-1], settings))
+    return _summarise(film, level, solutions, errors)
 
 
 def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
@@ -279,19 +269,26 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
     if any(recorded.get(name) != value for name, value in same.items()) or not is_near or error > accuracy:
         return None
     try:
-        solved = film_on_level(film, level, settings, start)
+        solutions = [film_on_level(film, level, settings, start)]
+        solutions.append(continue_solution(film, solutions[0], settings))
     except StepFailedError:
         return None
-    films = compute_films(film, solved)
+    errors = relative_errors * compute_films(film, solutions[-1]).thicknesses
+    return _summarise(film, level, solutions, errors)
+
+
+def _summarise(film: FilmCase, level: Level, solutions: list[FilmOnCells], errors: FloatArray) -> _RefinedFilm:
+    """Films of the last solution with their errors, and the steps of all solutions, one on each level and the last."""
+    films = compute_films(film, solutions[-1])
     return _RefinedFilm(
         level=level,
-        level_film=solved,
+        level_film=solutions[-1],
         films=films,
-        errors=dict(zip(FILM_NAMES, (relative_errors * films.thicknesses).tolist(), strict=True)),
-        error=error,
-        levels=1,
-        newton_steps=solved.solution.newton_steps,
-        linear_steps=solved.solution.linear_steps,
+        errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
+        error=float(errors.max()) / films.central_film,
+        levels=len(solutions) - 1,
+        newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
+        linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
     )
 
 
@@ -354,7 +351,7 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
 def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     """Label a film: on uniform cells along y, in the coordinates of the case."""
     solved = refined.level_film
-    solution, grid = solved.solution, solved.grid
+    solution, grid = solved.solution, solved.shape.grid
     # The solver's lubricant flows along +y.
     mirrored = film.speeds.entrainment < 0
     sign = -1 if mirrored else 1
@@ -442,8 +439,10 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
 def compute_rigid_motion(film: FilmCase, level_film: FilmOnCells) -> RigidMotion:
     """Approach at the centre of tilt, and tilt, relative to the reference lines under the pressure."""
     problem, state = level_film.problem, level_film.solution.state
-    pressure = level_film.merged.to_uniform_cells(state.pressure)
-    lines = film.line_motion(level_film.grid, level_film.columns, pressure)
+    forces = (problem.cells.areas * state.pressure).sum(axis=1)
+    lines = level_film.line_motion(
+        film, state.pressure, film.half_width * float(np.average(problem.cells.x, weights=forces))
+    )
     height, *tilts = -film.height_scale * state.motion
     approach = height - lines.height(np.array([film.tilt_centre])).item()
     if problem.lever is None:

@@ -126,6 +126,14 @@ def test_tilted_roller_has_minimum_film_at_its_end():
     assert float(film.least_film) == pytest.approx(93.97e-9, abs=float(film.least_film_error))
 
 
+def test_films_evaluate_the_reference_lines_on_the_finest_cells_only():
+    """The coarser levels have the motion of the reference lines of the dry contact."""
+    computed = cs.cache.info().kinds["reference lines"].computed
+    film = coarse_film(film_case(1.1 * LENGTH, 10.0, 5.0, profile=CROWN))
+    assert int(film.film_levels) > 2
+    assert cs.cache.info().kinds["reference lines"].computed == computed + 2
+
+
 def test_slice_films_miss_the_end_closure(crowned):
     case = replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), lubricant=None, motion=cs.Sliding())
     dry = cs.solve(case, accuracy=0.05, stresses=False)
