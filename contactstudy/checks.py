@@ -53,6 +53,7 @@ def factor_to(unit: str, name: str, input_unit: object) -> float:
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
+SingleArray = npt.NDArray[np.float32]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]

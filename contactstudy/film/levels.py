@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -13,20 +13,20 @@ import xarray as xr
 from scipy.fft import next_fast_len
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
-from contactstudy.checks import FloatArray, IntArray
-from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
+from contactstudy.checks import FloatArray, IntArray, SingleArray
+from contactstudy.contact.normal.contact import Contact, Shape, contact_operator
 from contactstudy.contact.normal.prescribed_loads import RigidMotion
+from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
 from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, initial_state, solve_newton
-from contactstudy.film.reynolds import FilmCells, Fluid
+from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 from contactstudy.kernels.load import Load
 
 # Shortest and longest distances of `FilmResolution` over the inlet length. A longer inlet thickens the film of a line
@@ -123,9 +123,10 @@ class FilmCase:
     inlet: float | None  # distance of the inlet's meniscus from the middle of the contact, metres; None: fully flooded
 
     @property
-    def rms(self) -> float | None:
-        """Roughness of both surfaces, metres; None for smooth surfaces."""
-        return None if self.asperities is None else self.asperities.rms
+    def settings(self) -> dict[str, object]:
+        """Arguments that determine the film of the case, as results record them."""
+        rms = None if self.asperities is None else self.asperities.rms
+        return {"inlet": self.inlet, "rms": rms, "resolution": asdict(self.resolution)}
 
     @property
     def speed(self) -> float:
@@ -175,13 +176,6 @@ class FilmCase:
         """Position x, metres, where the approach is independent of the tilt."""
         return self.case.roller_middle if self.case.load_position is None else self.case.load_position
 
-    def line_motion(self, grid: Grid, columns: slice, pressure: FloatArray) -> RigidMotion:
-        """Motion of the reference lines under a pressure over p0 on columns of the grid."""
-        body_load = np.zeros(grid.shape)
-        body_load[columns] = self.pressure_scale * pressure
-        shape = contact_shape(self.dry_case, grid)
-        return shape.line_motions(shape.loads(body_load), body_load).total
-
     @property
     def speed_number(self) -> float:
         """Speed number ``U = eta0 um / (E' R)``."""
@@ -228,14 +222,11 @@ class FilmCase:
     @cached_property
     def inlet_length(self) -> float:
         """Length over which the film forms, over the half-width; rounded, so that similar speeds have equal cells."""
-        line_half_width = hertz.line_half_width(
-            hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
-            self.case.roller.radius,
-            self.case.modulus,
-        )
-        inlet_ratio = (self.central_film * self.case.roller.radius / line_half_width**2) ** (2 / 3)  # eq. (403)
+        max_pressure = hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus)
+        width = max_pressure / self.pressure_scale  # half-width of the line contact over the half-width
+        inlet_length = width * (self.central_film / self.height_scale / width**2) ** (2 / 3)  # eq. (403)
         ratio = self.resolution.ratio
-        return float(ratio ** np.round(np.log(inlet_ratio * line_half_width / self.half_width) / np.log(ratio)))
+        return float(ratio ** np.round(np.log(inlet_length) / np.log(ratio)))
 
     @property
     def coarsest_level(self) -> Level:
@@ -302,38 +293,17 @@ class MergedCells:
         """Means over the merged cells of values (x, uniform cell)."""
         return np.asarray(np.add.reduceat(field, self.edges[:-1], axis=-1) / self.counts)
 
-    def compute_stiffness(self, response: FloatArray) -> FloatArray:
+    def compute_stiffness(self, response: FloatArray) -> SingleArray:
         """Displacement per pressure on merged cells (x, cell, cell), from a uniform cell's `response` (x, offset)."""
         cell_count = response.shape[-1]
         two_sided_response = np.concatenate([response[:, :0:-1], response], axis=-1)
         sums = np.concatenate([np.zeros((len(response), 1)), np.cumsum(two_sided_response, axis=-1)], axis=-1)
-        stiffness = np.zeros((len(response), self.counts.size, self.counts.size))
-        for centre_cell in self.centre_cells:
-            # The offsets of the uniform cells of a merged cell are consecutive.
-            offsets = centre_cell[:, None] - self.edges[None, :] + cell_count
-            stiffness += 0.5 * (sums[:, offsets[:, :-1]] - sums[:, offsets[:, 1:]])
+        # The offsets of the uniform cells of a merged cell are consecutive.
+        offsets = [centre_cell[:, None] - self.edges[None, :] + cell_count for centre_cell in self.centre_cells]
+        stiffness = np.empty((len(response), self.counts.size, self.counts.size), dtype=np.float32)
+        for matrix, column_sums in zip(stiffness, sums, strict=True):
+            matrix[:] = 0.5 * sum(-np.diff(column_sums[centre_offsets], axis=1) for centre_offsets in offsets)
         return stiffness
-
-
-def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]) -> FloatArray:
-    """Edges from `start` to `stop` of cells about as wide as `cell_width` at their midpoint.
-
-    Examples
-    --------
-    >>> graded_edges(0.0, 1.0, lambda x: 0.25).tolist()
-    [0.0, 0.25, 0.5, 0.75, 1.0]
-    """
-    # The integral of 1 / cell_width is equal over all cells.
-    points = [start]
-    while points[-1] < stop:
-        points.append(points[-1] + 0.1 * cell_width(points[-1]))
-    positions = np.minimum(np.array(points), stop)
-    midpoints = 0.5 * (positions[1:] + positions[:-1])
-    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
-    cell_count = max(2, int(np.ceil(measure[-1] - 1e-9)))
-    edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
-    edges[0], edges[-1] = start, stop
-    return np.asarray(edges)
 
 
 class Level(NamedTuple):
@@ -344,19 +314,33 @@ class Level(NamedTuple):
     closures: list[float]  # positions x of the narrowest columns over the half-width
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
+    def refined(self, direction: str, film: FilmCase, x: FloatArray, minima: Iterable[float]) -> Level:
+        """Next level in a direction, of a film with columns at `x` and least films of both sides at `minima`."""
+        # The centres of the columns with the least films are equal for similar speeds.
+        nearest = (float(x[np.abs(x - position).argmin()]) for position in minima)
+        closures = self.closures if direction == "cells" else [*film.contact_ends, *nearest]
+        return self._replace(closures=closures, **{direction: getattr(self, direction) + 1})
+
 
 class FilmOnCells(NamedTuple):
     """A solved film and its cells."""
 
+    level: Level
     problem: FilmProblem
     solution: FilmSolution
-    grid: Grid  # uniform cells along y and columns over the whole body
-    columns: slice  # columns of the grid under the roller
+    shape: Shape  # the dry contact on uniform cells along y and columns over the whole body
+    columns: slice  # columns under the roller
     merged: MergedCells  # cells along y
 
+    def line_motion(self, film: FilmCase, pressure: FloatArray, position: float) -> RigidMotion:
+        """Motion of the reference lines under a pressure, its level below a position x, metres."""
+        body_load = np.zeros(self.shape.grid.shape)
+        body_load[self.columns] = film.pressure_scale * self.merged.to_uniform_cells(pressure)
+        return self.shape.line_motions(body_load, position).total
 
-def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
-    """Return the cells of a level, and the window along y."""
+
+def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
+    """Return the cells of a level, and those along y as merged cells."""
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
@@ -388,16 +372,17 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, 
         return float(max(min(min_cell + resolution.growth * scale**0.5 * distance, max_width) / step * 1.0001, 1.0))
 
     merged = MergedCells.of(cell_count, max_cell_count)
-    return FilmCells(x_edges=x_edges, y_edges=np.asarray(y_start + step * merged.edges)), merged, (y_start, y_stop)
+    return FilmCells(x_edges=x_edges, y_edges=np.asarray(y_start + step * merged.edges)), merged
 
 
 def film_on_level(
     film: FilmCase, level: Level, settings: FilmSettings, start: FilmOnCells | xr.Dataset | None = None
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, from the dry contact or from another film."""
-    cells, merged, window = create_cells(film, level)
+    """Solve for the film on the cells of a level, to its tolerance, from the dry contact or from another film."""
+    cells, merged = create_cells(film, level)
     a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
-    grid = graded_grid(film.case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
+    window = a * float(cells.y_edges[0]), a * float(cells.y_edges[-1])
+    grid = graded_grid(film.case, a * cells.x_edges, window, int(merged.edges[-1]))
     first_column = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
     columns = slice(first_column, first_column + cells.shape[0])
     shape = contact_shape(film.dry_case, grid)
@@ -409,56 +394,57 @@ def film_on_level(
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
         return operator(loads)[columns] / height_scale
 
-    unit_load = np.zeros((cells.shape[0], grid.cells_y))
-    unit_load[:, 0] = 1.0
-    arm = cells.x - film.tilt_centre / a
+    unit_load = np.tile(np.eye(1, grid.cells_y), (cells.shape[0], 1))
+    # The tilt refers to the reference lines, here under the dry contact, the height to the bodies far away.
+    gap = shape.gap.values - RigidMotion(0.0, film.dry_contact.motions.total.tilt).height(grid.x - film.tilt_centre)
+    resultants = shape.prescribed.resultants(grid)
     rough = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=merged.to_centres(shape.gap.values[columns]) / height_scale,
+        gap=merged.to_centres(gap[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
         column_stiffness=merged.compute_stiffness(displace(unit_load)),
         load=film.case.normal_load / (p0 * a**2),
-        lever=None if film.case.load_position is None else arm / np.abs(arm).max(),
+        lever=None if resultants.lever is None else resultants.lever[columns, 0],
         central_film=film.central_film / height_scale,
         asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
         mean_height=None if rough is None else rough.mean_height(height_scale),
     )
     if start is None:
-        dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-        state = _dry_state(film, problem, dry_contact, columns, merged)
+        contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
+        dry = solve_normal(operator, contact)
+        opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
+        # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
+        separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
+        distance = merged.to_centres(opening[columns]) / height_scale + separation
+        motion = np.append(separation, np.zeros(len(dry.motion) - 1)) - np.array(dry.motion) / height_scale
+        state = initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
     elif isinstance(start, xr.Dataset):
         state = _convert_result(film, start, problem)
     else:
         state = _transfer_state(start, problem)
-    # The tilt refers to the reference lines under the pressure of the start, the height to the bodies far away.
-    line_tilt = film.line_motion(grid, columns, merged.to_uniform_cells(state.pressure)).tilt
-    problem = replace(problem, gap=problem.gap - line_tilt * a * arm[:, None] / height_scale)
-    state = initial_state(problem, state.pressure, state.motion, state.distance)
+    settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     solution = solve_newton(problem, state, settings, steady=start is not None)
-    return FilmOnCells(problem, solution, grid, columns, merged)
+    return FilmOnCells(level=level, problem=problem, solution=solution, shape=shape, columns=columns, merged=merged)
 
 
-def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
-    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
-    state = _transfer_state(level_film, level_film.problem)
-    return level_film._replace(solution=solve_newton(level_film.problem, state, settings, steady=True))
+def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+    """Continue on the same cells, between the reference lines under the film, to the tolerance of the settings."""
+    problem, state = level_film.problem, level_film.solution.state
 
+    def rotate(tilt: float) -> FloatArray:
+        return RigidMotion(0.0, tilt).height(film.half_width * problem.cells.x - film.tilt_centre) / film.height_scale
 
-def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
-    """First guess: pressure and gap of the dry contact, with the distance at the formula's central film added to it."""
-    pressure = merged.average(dry.pressure[columns]) / film.pressure_scale
-    # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
-    (separation,) = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
-    distance = merged.to_centres(dry.gap[columns]) / film.height_scale + separation
-    motion = np.zeros(len(problem.motions))
-    line_height = dry.motions.total.height(np.array([film.tilt_centre])).item()
-    motion[0] = separation - (dry.approach + line_height) / film.height_scale
-    if film.case.load_position is not None:
-        max_lever = np.abs(problem.cells.x - film.case.load_position / film.half_width).max()
-        motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale
-    return initial_state(problem, pressure, motion, distance)
+    problem = replace(
+        problem,
+        gap=problem.gap + rotate(film.dry_contact.motions.total.tilt),
+        displace=lambda load: (
+            level_film.problem.displace(load) - rotate(level_film.line_motion(film, load, film.tilt_centre).tilt)
+        ),
+    )
+    state = initial_state(problem, state.pressure, state.motion, state.distance)
+    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, steady=True))
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:

@@ -8,9 +8,9 @@ import numpy as np
 
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
-from contactstudy.film.levels import graded_edges, moes_line
+from contactstudy.film.levels import moes_line
 from contactstudy.film.newton import SETTINGS, FilmProblem, FilmSolution, initial_state, solve_newton
-from contactstudy.film.reynolds import FilmCells, Fluid
+from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
 COARSEST_FROM_DRY = 0.35  # Narrowest cells that start from the dry contact, as `finest` of `solve_line`. Speed
@@ -71,7 +71,7 @@ def solve_line(
         fluid=Fluid.of(oil, p0, 3 * np.pi**2 / (8 * load**2)),
         gap=0.5 * y[None] ** 2,
         displace=lambda pressure: pressure @ stiffness.T,
-        column_stiffness=stiffness[None],
+        column_stiffness=stiffness[None].astype(np.float32),
         load=0.5 * np.pi,
         lever=None,
         central_film=central_film,

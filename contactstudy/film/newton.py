@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import linalg, sparse
+from scipy.sparse.linalg import LinearOperator, gmres
 
-from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.checks import BoolArray, FloatArray, SingleArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
@@ -72,7 +73,7 @@ class FilmProblem:
     fluid: Fluid
     gap: FloatArray  # (x, y): gap before deformation
     displace: Callable[[FloatArray], FloatArray]  # displacement of the surfaces apart (x, y) under a pressure
-    column_stiffness: FloatArray  # (x, y, y): displacement of a column's cells under a pressure equal in all columns
+    column_stiffness: SingleArray  # (x, y, y): displacement of a column's cells under a pressure equal in all columns
     load: float  # prescribed sum of the pressure times the areas
     lever: FloatArray | None  # (x): distances from the load's position over the largest one, if free to tilt
     central_film: float  # estimate of the central film: the scale of tolerances
@@ -241,12 +242,7 @@ class _Iteration:
         """Iterate to a pseudo-time step, or, without `mass`, to the steady state; raise on failure."""
         settings = self.settings
         max_steps = settings.newton_steps if mass is not None else 3 * settings.newton_steps
-
-        def min_film_ratio(state: FilmState) -> float:
-            smooth = self.problem.mean_height is None
-            return float(state.distance.min()) / self.problem.central_film if smooth else np.inf
-
-        elimination, norm = None, np.inf
+        elimination, norm, min_film_ratio = None, np.inf, np.inf
         for _ in range(max_steps):
             linearised = self.linearise(state, step, mass)
             if not np.isfinite(linearised.residual).all():
@@ -261,10 +257,12 @@ class _Iteration:
             state, step_fraction, pressure_change = self.apply_step(state, change)
             if mass is not None and step_fraction == 1 and pressure_change < 1e-3:
                 return self.certify(state, self.linearise(state, step, mass))
-            if min_film_ratio(state) < settings.closed_film_ratio:
+            if self.problem.mean_height is None:
+                min_film_ratio = float(state.distance.min()) / self.problem.central_film
+            if min_film_ratio < settings.closed_film_ratio:
                 break
         position = None
-        if min_film_ratio(state) < settings.nearly_closed_ratio:
+        if min_film_ratio < settings.nearly_closed_ratio:
             row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
             position = float(self.problem.cells.x[row]), float(self.problem.cells.y[cell])
         raise StepFailedError(f"no convergence within {max_steps} Newton steps", position)
@@ -324,8 +322,6 @@ class _Iteration:
         self, linearised: _LinearisedEquations, elimination: _ColumnElimination, mismatch: FloatArray
     ) -> FloatArray:
         """Change of pressure and rigid motion, by GMRES with elimination of columns as preconditioner, eq. (405)."""
-        from scipy.sparse.linalg import LinearOperator, gmres
-
         problem, settings = self.problem, self.settings
         cell_count = problem.gap.size
         motions, resultants = problem.motions, problem.resultants / problem.load
@@ -365,45 +361,43 @@ class _Iteration:
         return np.concatenate(precondition(outflows, load_change))
 
 
-def _select_column_entries(matrix: sparse.csr_array, cell_count: int) -> sparse.coo_array:
-    """Entries between cells of the same column of `cell_count` cells."""
+def _select_column_entries(matrix: sparse.csr_array, cell_count: int) -> sparse.csr_array:
+    """Entries between cells of the same column: array (cell, cell of the column)."""
     entries = matrix.tocoo()
-    mask = entries.row // cell_count == entries.col // cell_count
-    return sparse.coo_array((entries.data[mask], (entries.row[mask], entries.col[mask])), entries.shape)
+    is_inside = entries.row // cell_count == entries.col // cell_count
+    row, column_cell = entries.row[is_inside], entries.col[is_inside] % cell_count
+    return sparse.csr_array((entries.data[is_inside], (row, column_cell)), (matrix.shape[0], cell_count))
 
 
-def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
+def _elastic_diagonal(stiffness: SingleArray, by_distance: sparse.csr_array) -> FloatArray:
     """Diagonal (cell) of the product of the derivative by the distance and the columns' stiffness."""
-    columns, cell_count = stiffness.shape[:2]
-    entries = _select_column_entries(by_distance, cell_count)
-    products = entries.data * stiffness[entries.row // cell_count, entries.col % cell_count, entries.row % cell_count]
-    return np.asarray(np.bincount(entries.row, products, minlength=columns * cell_count), dtype=np.float64)
+    entries = _select_column_entries(by_distance, cell_count := stiffness.shape[1]).tocoo()
+    products = entries.data * stiffness[entries.row // cell_count, entries.col, entries.row % cell_count]
+    return np.asarray(np.bincount(entries.row, products, minlength=by_distance.shape[0]), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
 class _ColumnElimination:
     """Elimination of the columns one after the other, as if the pressure changed equally in all columns."""
 
-    inverses: FloatArray  # (x, y, y): inverses of the columns' equations after elimination of earlier columns
-    lower: FloatArray  # (x, y): coefficients of the pressures in the column before; `upper`: in the column after
-    upper: FloatArray
+    inverses: SingleArray  # (x, y, y): of the columns' equations after elimination of earlier columns
+    lower: SingleArray  # (x, y): coefficients of the pressures in the column before; `upper`: in the column after
+    upper: SingleArray
 
     @classmethod
     def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
         """Return the elimination of the linearised equations."""
         columns, cell_count = problem.cells.shape
-        before, after = np.zeros((2, columns, cell_count))
+        before, after = np.zeros((2, columns, cell_count), dtype=np.float32)
         before[1:] = linearised.by_pressure.diagonal(-cell_count).reshape(-1, cell_count)
         after[:-1] = linearised.by_pressure.diagonal(cell_count).reshape(-1, cell_count)
-        by_distance = _select_column_entries(linearised.by_distance, cell_count).tocsr()
-        inverses = (by_distance @ problem.column_stiffness.reshape(-1, cell_count)).reshape(
-            columns, cell_count, cell_count
+        by_distance, by_pressure = (
+            _select_column_entries(matrix, cell_count) for matrix in (linearised.by_distance, linearised.by_pressure)
         )
-        by_pressure = _select_column_entries(linearised.by_pressure, cell_count)
-        inverses[by_pressure.row // cell_count, by_pressure.row % cell_count, by_pressure.col % cell_count] += (
-            by_pressure.data
-        )
-        for column, matrix in enumerate(inverses):
+        inverses = np.empty((columns, cell_count, cell_count), dtype=np.float32)
+        for column, stiffness in enumerate(problem.column_stiffness):
+            cells = slice(column * cell_count, (column + 1) * cell_count)
+            matrix = by_distance[cells] @ stiffness + by_pressure[cells].toarray()
             if column:
                 matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]
             inverses[column] = linalg.inv(matrix, overwrite_a=True, check_finite=False)
@@ -411,10 +405,10 @@ class _ColumnElimination:
 
     def solve(self, residual: FloatArray) -> FloatArray:
         """Pressures that remove a residual: array (cell)."""
-        pressures = residual.reshape(self.lower.shape).copy()
+        pressures = residual.reshape(self.lower.shape).astype(np.float32)
         for column in range(1, len(pressures)):
             pressures[column] -= self.lower[column] * (self.inverses[column - 1] @ pressures[column - 1])
         pressures[-1] = self.inverses[-1] @ pressures[-1]
         for column in range(len(pressures) - 2, -1, -1):
             pressures[column] = self.inverses[column] @ (pressures[column] - self.upper[column] * pressures[column + 1])
-        return pressures.ravel()
+        return pressures.ravel().astype(np.float64)

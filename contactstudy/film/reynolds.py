@@ -65,6 +65,27 @@ class Flow(NamedTuple):
     by_film: sparse.csr_array  # derivatives at a fixed pressure
 
 
+def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]) -> FloatArray:
+    """Edges from `start` to `stop` of cells about as wide as `cell_width` at their midpoint.
+
+    Examples
+    --------
+    >>> graded_edges(0.0, 1.0, lambda x: 0.25).tolist()
+    [0.0, 0.25, 0.5, 0.75, 1.0]
+    """
+    # The integral of 1 / cell_width is equal over all cells.
+    points = [start]
+    while points[-1] < stop:
+        points.append(points[-1] + 0.1 * cell_width(points[-1]))
+    positions = np.minimum(np.array(points), stop)
+    midpoints = 0.5 * (positions[1:] + positions[:-1])
+    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
+    cell_count = max(2, int(np.ceil(measure[-1] - 1e-9)))
+    edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
+    edges[0], edges[-1] = start, stop
+    return np.asarray(edges)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmCells:
     """Cells of the film, their faces, and the differences between them."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import asdict, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +30,7 @@ from contactstudy.film.levels import (
     continue_solution,
     film_on_level,
 )
-from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
+from contactstudy.film.newton import SETTINGS, FilmSettings, FilmSolution, StepFailedError
 from contactstudy.threads import one_blas_thread
 
 ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach
@@ -124,13 +123,17 @@ def solve_film(
     try:
         with one_blas_thread():
             refined = _refine(film, limit, settings, start)
+            level_film = continue_solution(film, refined.level_film, settings)
     except StepFailedError as error:
         raise _create_film_error(error, film.half_width) from None
+    solutions = [*refined.solutions, level_film.solution]
+    refined = _RefinedFilm(level_film, compute_films(film, level_film), refined.direction_errors, solutions)
     result = _label_film(film, refined)
     seconds = time.perf_counter() - start_time
-    if refined.error > limit:
+    relative_error = max(refined.errors.values()) / refined.films.central_film
+    if relative_error > limit:
         warnings.warn(
-            f"the films have converged to {refined.error:.2g} of the central film, not to accuracy = {limit:g}: "
+            f"the films have converged to {relative_error:.2g} of the central film, not to accuracy = {limit:g}: "
             "allow more levels, or more error",
             ConvergenceWarning,
             stacklevel=2,
@@ -138,8 +141,9 @@ def solve_film(
     _warn_of_viscosity(film, refined.level_film)
     described = describe(result, "lubricated contact of a roller with an elastic body")
     labelled = without_error(described, "slice_film", "approach", "tilt")
-    cells = {"level": refined.level._asdict(), "resolution": asdict(film.resolution)}
-    recorded_arguments = {"accuracy": limit, "inlet": film.inlet, "rms": film.rms, **cells}
+    errors = {name: values.tolist() for name, values in refined.direction_errors.items()}
+    cells = {"level": refined.level_film.level._asdict(), "direction_errors": errors}
+    recorded_arguments = {"accuracy": limit, **film.settings, **cells}
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
 
@@ -198,101 +202,93 @@ FILM_NAMES = Films._fields[:5]
 
 
 class _RefinedFilm(NamedTuple):
-    """Film on the finest level, its values, their errors, and the largest error over the central film."""
+    """Film on the finest level, its values, and the solutions of all levels."""
 
-    level: Level
     level_film: FilmOnCells
     films: Films
-    errors: dict[str, float]  # by the film's name
-    error: float
-    levels: int
-    newton_steps: int
-    linear_steps: int
+    direction_errors: dict[str, FloatArray]  # by the direction of refinement: relative errors of the films
+    solutions: list[FilmSolution]
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Errors by the film's name."""
+        errors = _combine_errors(self.direction_errors, self.films.thicknesses)
+        return dict(zip(FILM_NAMES, errors.tolist(), strict=True))
 
 
 def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
     if start is not None and (refined := _continue_film(film, accuracy, settings, start)) is not None:
         return refined
-    coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     level = film.coarsest_level
-    solutions: list[FilmOnCells] = []
+    level_film: FilmOnCells | None = None
+    solutions: list[FilmSolution] = []
     films: list[Films] = []
     changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in ERROR_FACTORS}
-    direction = ""
-    errors = np.full(len(FILM_NAMES), np.inf)
+    direction, direction_errors = "", {name: change[0] for name, change in changes.items()}
     while True:
         try:
-            solutions.append(film_on_level(film, level, coarse_settings, [start, *solutions][-1]))
+            level_film = film_on_level(film, level, settings, level_film or start)
         except StepFailedError:
-            if not solutions and start is not None:
+            if level_film is None and start is not None:
                 return _refine(film, accuracy, settings)
-            if np.isinf(errors).any():
+            if level_film is None or np.isinf([*direction_errors.values()]).any():
                 raise
             break
-        films.append(compute_films(film, solutions[-1]))
+        solutions.append(level_film.solution)
+        films.append(compute_films(film, level_film))
         if direction:
             changes[direction].append(np.abs(films[-1].thicknesses - films[-2].thicknesses))
         # Of the latest two changes by refinement in one direction one may vanish by chance.
         direction_errors = {
-            name: ERROR_FACTORS[name] * np.maximum(latest, CHANGE_RATIOS[name] * former)
+            name: ERROR_FACTORS[name] * np.maximum(latest, CHANGE_RATIOS[name] * former) / films[-1].thicknesses
             for name, (*_, former, latest) in changes.items()
         }
-        errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].thicknesses
+        error = _combine_errors(direction_errors, films[-1].thicknesses).max() / films[-1].central_film
         directions = [name for name in ERROR_FACTORS if getattr(level, name) < film.resolution.levels - 1]
-        if errors.max() <= accuracy * films[-1].central_film or not directions:
+        if error <= accuracy or not directions:
             break
-        direction = max(directions, key=lambda name: float(direction_errors[name].max()))
-        level = level._replace(**{direction: getattr(level, direction) + 1})
-        if direction == "columns":
-            # The centres of the columns with the least films of both sides are equal for similar speeds.
-            x = solutions[-1].problem.cells.x
-            minima = (float(x[np.abs(x - position).argmin()]) for position in (films[-1].first_x, films[-1].last_x))
-            level = level._replace(closures=[*film.contact_ends, *minima])
-    solutions.append(continue_solution(solutions[-1], settings))
-    return _RefinedFilm(
-        level=level,
-        level_film=solutions[-1],
-        films=compute_films(film, solutions[-1]),
-        errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
-        error=float(errors.max()) / films[-1].central_film,
-        levels=len(films),
-        newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
-        linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
-    )
+        direction = max(directions, key=lambda name: float((direction_errors[name] * films[-1].thicknesses).max()))
+        level = level.refined(direction, film, level_film.problem.cells.x, (films[-1].first_x, films[-1].last_x))
+    return _RefinedFilm(level_film, films[-1], direction_errors, solutions)
+
+
+def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:
+    """Errors of films of some thicknesses from their relative errors by direction."""
+    return (np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR) * thicknesses
 
 
 def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
-    """Film on the finest cells of a similar film, with its relative errors; None if they do not suffice."""
+    """Film on cells at most one refinement finer than those of a similar film; None if they do not suffice."""
     recorded = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
-    same = {"inlet": film.inlet, "rms": film.rms, "resolution": asdict(film.resolution)}
     try:
         check_solved_for(start, film.case)
         level = Level(**recorded["level"])
+        # Errors are of second order in the cells over the inlet length, a power 2/3 of the film: eq. (403).
+        growth = max(film.film_ratio(start) ** (-4 / 3), 1.0)
+        direction_errors = {name: growth * np.array(recorded["direction_errors"][name]) for name in ERROR_FACTORS}
     except (InvalidInputError, KeyError, TypeError):
         return None
-    # Errors are of second order in the cells over the inlet length, a power 2/3 of the film: eq. (403).
-    growth = max(film.film_ratio(start) ** (-4 / 3), 1.0)
-    relative_errors = growth * np.array([float(start[f"{name}_error"] / start[name]) for name in FILM_NAMES])
     is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
-    error = float((relative_errors * [float(start[name] / start["central_film"]) for name in FILM_NAMES]).max())
-    if any(recorded.get(name) != value for name, value in same.items()) or not is_near or error > accuracy:
+    ratios = np.array([float(start[name] / start["central_film"]) for name in FILM_NAMES])
+    x = start["x"].values / film.half_width
+    minima = [float(start[f"least_film_{side}_x"]) / film.half_width for side in ("first", "last")]
+    for name in sorted(ERROR_FACTORS, key=lambda name: -float((direction_errors[name] * ratios).max())):
+        if (
+            _combine_errors(direction_errors, ratios).max() > accuracy
+            and getattr(level, name) < film.resolution.levels - 1
+        ):
+            level = level.refined(name, film, x, minima)
+            direction_errors[name] *= CHANGE_RATIOS[name]
+    if any(recorded.get(name) != value for name, value in film.settings.items()) or not is_near:
+        return None
+    if _combine_errors(direction_errors, ratios).max() > accuracy:
         return None
     try:
-        solved = film_on_level(film, level, settings, start)
+        level_film = film_on_level(film, level, settings, start)
     except StepFailedError:
         return None
-    films = compute_films(film, solved)
-    return _RefinedFilm(
-        level=level,
-        level_film=solved,
-        films=films,
-        errors=dict(zip(FILM_NAMES, (relative_errors * films.thicknesses).tolist(), strict=True)),
-        error=error,
-        levels=1,
-        newton_steps=solved.solution.newton_steps,
-        linear_steps=solved.solution.linear_steps,
-    )
+    return _RefinedFilm(level_film, compute_films(film, level_film), direction_errors, [level_film.solution])
 
 
 def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:
@@ -354,7 +350,7 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
 def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     """Label a film: on uniform cells along y, in the coordinates of the case."""
     solved = refined.level_film
-    solution, grid = solved.solution, solved.grid
+    solution, grid = solved.solution, solved.shape.grid
     # The solver's lubricant flows along +y.
     mirrored = film.speeds.entrainment < 0
     sign = -1 if mirrored else 1
@@ -410,9 +406,9 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "film_load_error": solution.load_error,
         "film_complementarity_error": solution.complementarity_error,
         "converged": solution.converged,
-        "newton_steps": refined.newton_steps,
-        "linear_steps": refined.linear_steps,
-        "film_levels": refined.levels,
+        "newton_steps": sum(step.newton_steps for step in refined.solutions),
+        "linear_steps": sum(step.linear_steps for step in refined.solutions),
+        "film_levels": len(refined.solutions) - 1,
         "hertz_half_width": film.half_width,
         "hertz_max_pressure": film.pressure_scale,
     }
@@ -442,13 +438,14 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
 def compute_rigid_motion(film: FilmCase, level_film: FilmOnCells) -> RigidMotion:
     """Approach at the centre of tilt, and tilt, relative to the reference lines under the pressure."""
     problem, state = level_film.problem, level_film.solution.state
-    pressure = level_film.merged.to_uniform_cells(state.pressure)
-    lines = film.line_motion(level_film.grid, level_film.columns, pressure)
+    forces = (problem.cells.areas * state.pressure).sum(axis=1)
+    lines = level_film.line_motion(
+        film, state.pressure, film.half_width * float(np.average(problem.cells.x, weights=forces))
+    )
     height, *tilts = -film.height_scale * state.motion
     approach = height - lines.height(np.array([film.tilt_centre])).item()
-    if problem.lever is None:
-        return RigidMotion(approach, film.case.tilt)
-    return RigidMotion(approach, tilts[0] * float(np.ptp(problem.lever) / np.ptp(problem.cells.x)) / film.half_width)
+    shape = level_film.shape
+    return RigidMotion(approach, tilts[0] / shape.prescribed.max_arm(shape.grid) if tilts else film.case.tilt)
 
 
 def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ from contactstudy.bodies.models import Body
 from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
-from contactstudy.film.levels import FilmCase, film_on_level, moes_line
+from contactstudy.film.levels import FilmCase, continue_solution, film_on_level, moes_line
 from contactstudy.film.newton import SETTINGS
 from contactstudy.film.solve import create_film_case
 from contactstudy.profiles import FullCrown, Lundberg
@@ -118,7 +118,8 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
-    solution = film_on_level(lubricated, lubricated.coarsest_level, SETTINGS).solution
+    level_film = film_on_level(lubricated, lubricated.coarsest_level, SETTINGS)
+    solution = continue_solution(lubricated, level_film, SETTINGS).solution
     fields = {"film": solution.film, "pressure": solution.fluid_pressure}
     # The cells of both solutions differ only by rounding.
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
@@ -81,11 +80,14 @@ class Shape(NamedTuple):
             if even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
         ]
 
-    def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
-        """Motions of the reference lines under loads on the body; `level` is taken below the pressure's resultant."""
-        grid, counterbody = self.grid, self.counterbody
-        forces = (grid.weights * pressure).sum(axis=1)
-        position = float(forces @ grid.x / max(forces.sum(), np.finfo(float).tiny))
+    def find_resultant(self, pressure: FloatArray) -> float:
+        """Position x of a pressure's resultant, metres."""
+        forces = (self.grid.weights * pressure).sum(axis=1)
+        return float(forces @ self.grid.x / max(forces.sum(), np.finfo(float).tiny))
+
+    def line_motions(self, pressure: FloatArray, position: float) -> LineMotions:
+        """Motions of the reference lines under a pressure; `level` is taken below a position x."""
+        grid, counterbody, loads = self.grid, self.counterbody, self.loads(pressure)
         first = line_motion(self.body, grid, loads, position)
         if counterbody is None:
             return LineMotions(first, first)
@@ -136,9 +138,7 @@ class Contact:
     @property
     def load_position(self) -> float:
         """Position x of the pressure's resultant, metres."""
-        grid = self.shape.grid
-        forces = grid.weights * self.pressure
-        return float((forces * grid.x[:, None]).sum() / forces.sum())
+        return self.shape.find_resultant(self.pressure)
 
     def warn_unless_converged(self) -> None:
         """Warn with the violations of the conditions, if the iteration did not converge."""
@@ -251,7 +251,7 @@ def iterate_contact(
         iterate = solve_problem(operator, problem, guess)
         applications += iterate.applications
         guess = iterate.pressure
-        motions = shape.line_motions(shape.loads(guess), guess)
+        motions = shape.line_motions(guess, shape.find_resultant(guess))
         motion = np.array(motions.total)
         residual = np.where(fixed, motion - trial, 0.0)
         motion_norm = float(np.linalg.norm(weights * motion))
