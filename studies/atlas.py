@@ -3,14 +3,15 @@
 Usage: ``python studies/atlas.py [--points 1024] [--out FOLDER]``; about 2.5 s of processor time per point. Solves the
 points of a Sobol sequence in five dimensionless groups and writes ``atlas.nc``, the package's ``data/atlas.nc``: one
 row per point. A repeated call with more points adds to the finished ones. The options ``--seed 2 --compare`` solve the
-points of another sequence, into another folder, and compare the package's atlas with them.
+points of another sequence, into another folder, and compare the package's atlas with them; for the stiffness each point
+is solved under two more loads.
 """
 
 from __future__ import annotations
 
 import argparse
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 import contactstudy as cs
-from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, even_variation
+from contactstudy.bearing.atlas import GROUPS, LOAD_RISE, LOAD_STEP, QUANTITIES, AtlasTable, even_variation
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1e9
 """Scales, which the dimensionless results do not depend on."""
@@ -65,10 +66,10 @@ def half_widths(points: dict[str, np.ndarray]) -> np.ndarray:
     return 2 * PRESSURE * RADIUS * (1 - points["poisson"] ** 2) / YOUNG
 
 
-def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
-    """Study of the points."""
-    points = groups(count, seed)
-    a = half_widths(points)
+def make_study(count: int, seed: int, accuracy: float, factors: Sequence[float]) -> cs.Study:
+    """Study of the points, each under several pressures, `factors` over PRESSURE: equal rollers in metres."""
+    points = {name: np.repeat(values, len(factors)) for name, values in groups(count, seed).items()}
+    a, factor = half_widths(points), np.tile(factors, count)
     length = a * points["length_over_a"]
     return cs.Study(
         name="atlas",
@@ -77,7 +78,6 @@ def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
         base={
             "young": YOUNG,
             "radius": RADIUS,
-            "max_pressure": PRESSURE,
             "accuracy": accuracy,
             "field_x_over_a": [0.0],
             "field_y_over_a": [0.0],
@@ -85,11 +85,12 @@ def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
         },
         zip={
             "roller_length": length.tolist(),
-            "e_over_a": points["e_over_a"].tolist(),
+            "max_pressure": (PRESSURE * factor).tolist(),
+            "e_over_a": (points["e_over_a"] / factor).tolist(),
             "tilt": (2 * points["tilt_ratio"] * a**2 / (length * RADIUS)).tolist(),
             "poisson": points["poisson"].tolist(),
             "profile": [
-                {"kind": "lundberg", "amplitude": float(amplitude), "name": f"point {number}"}
+                {"kind": "lundberg", "amplitude": float(amplitude), "name": f"point {number // len(factors)}"}
                 for number, amplitude in enumerate(points["crown"] * a**2 / RADIUS)
             ],
         },
@@ -97,11 +98,12 @@ def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
 
 
 def table_of(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
-    """Return groups and dimensionless quantities of the solved points."""
-    solved = study["status"].values == "ok"
+    """Return groups and dimensionless quantities of the solved points; the stiffness from their further pressures."""
+    cases = {name: study[name].values.reshape(count, -1) for name in study}
+    solved = (cases["status"] == "ok").all(axis=1)
     points = {name: values[solved] for name, values in groups(count, seed).items()}
     a, p0 = half_widths(points), PRESSURE
-    values = {name: study[name].values[solved] for name in study}
+    values, approaches = {name: column[solved, 0] for name, column in cases.items()}, cases["approach"][solved].T
     mean = values["normal_load"] / points["length_over_a"]
     columns = {
         "peak_pressure_ratio": values["peak_pressure"] / p0,
@@ -109,6 +111,9 @@ def table_of(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
         "approach_ratio": values["approach"] * RADIUS / a**2,
         "end_load_ratio": values["end_load_last"] / mean,
     }
+    if len(approaches) > 1:
+        slope = np.log(approaches[2] / approaches[1]) / LOAD_RISE
+        columns["stiffness_ratio"] = np.pi / (4 * columns["approach_ratio"] * slope)
     table = xr.Dataset({name: ("point", column) for name, column in (points | columns).items()})
     for name, limits in RANGES.items():
         table[name].attrs["valid_range"] = limits
@@ -174,7 +179,7 @@ def powers(points: np.ndarray, degree: int) -> Iterator[tuple[int, ...]]:
 def compare(solved: xr.Dataset) -> None:
     """Print actual and stated errors of the atlas at solved points."""
     result = cs.atlas(*(solved[name] for name in GROUPS))
-    for name in QUANTITIES:
+    for name in (*QUANTITIES, "stiffness_ratio"):
         scale = solved[name] if name != "end_load_ratio" else 1.0
         actual = (np.abs(result[name] - solved[name]) / scale).values
         stated = (result[f"{name}_error"] / scale).values
@@ -196,7 +201,8 @@ def main() -> None:
     parser.add_argument("--share", type=int, nargs=2, default=None, help="part of the points, such as 1 2")
     parser.add_argument("--compare", action="store_true", help="compare the package's atlas with the points")
     options = parser.parse_args()
-    study = make_study(options.points, options.seed, options.accuracy)
+    factors = (1.0, 1 - LOAD_STEP, 1 + LOAD_STEP) if options.compare else (1.0,)
+    study = make_study(options.points, options.seed, options.accuracy, factors)
     cs.run_study(study, options.out, workers=options.workers, share=options.share and tuple(options.share))
     solved = table_of(cs.open_study(options.out), options.points, options.seed)
     if options.compare:

@@ -2,7 +2,7 @@
 
 Usage: ``python -m benchmarks.performance.study_layer [--frictions 50] [--pairs 48] [--cases 100000]``; 0 omits a part.
 The gain of a second worker is printed beside that of two bare processes, without the layer, on the same cases. The
-options ``--level surface --client`` retain surfaces, and solve on a dask cluster with the scheduler in this process.
+option ``--level surface`` retains surfaces; ``--client`` solves on a dask cluster that the run did not start.
 """
 
 from __future__ import annotations
@@ -16,17 +16,21 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import xarray as xr
-from distributed import Client, LocalCluster
+from distributed import Client
 
 from contactstudy import Study, open_study, run_study, solve
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.fields import surface
 from contactstudy.study import RunReport
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.engine import WORKER_ENVIRONMENT
 from contactstudy.study.worker import Solver, single_threaded
 from tests.stand_in_solver import solve_fake
+from tests.study.cluster import cluster
 
 BASE = {
     "young": 210e9,
@@ -40,7 +44,7 @@ BASE = {
 GIGAPASCAL = 1e9
 
 
-TABLE = {
+TABLE: dict[str, Any] = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
@@ -78,6 +82,48 @@ def overhead(frictions: int) -> None:
     )
 
 
+def stacking(contacts: int = 10) -> None:
+    """Print the part of a contact's time that products with the spectra of several contacts at once would save."""
+    single_seconds = stacked_seconds = 0.0
+    multiply = surface._multiply_matrices
+
+    def multiply_timed(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
+        nonlocal single_seconds, stacked_seconds
+        parts = np.repeat(spectrum[..., None], contacts, axis=-1).view(np.float64)
+        start_time = time.process_time()
+        product = multiply(matrices, spectrum)
+        middle_time = time.process_time()
+        _ = matrices @ parts
+        single_seconds, stacked_seconds = (
+            single_seconds + middle_time - start_time,
+            stacked_seconds + time.process_time() - middle_time,
+        )
+        return product
+
+    study = Study(name="stacking", level="summary", base=TABLE, sweep={"e_over_a": [1.0], "max_pressure": [1e9, 1.5e9]})
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(surface, "_multiply_matrices", multiply_timed):
+        start_time = time.process_time()
+        run(study, Path(folder), workers=0)
+        seconds = time.process_time() - start_time - stacked_seconds
+    saved = (single_seconds - stacked_seconds / contacts) / seconds
+    print(f"stacking: {contacts} contacts at once would save {100 * saved:.1f} % of the time of each", flush=True)
+
+
+def scaled_lengths(factor: float = 1.7) -> None:
+    """Print the difference between the dimensionless numbers of two rollers with equal ratios of all lengths."""
+    lengths = {name: [TABLE[name], factor * TABLE[name]] for name in ("radius", "roller_length")}
+    profiles = [{"kind": "cylinder", "fillet_radius": scale * 5e-5} for scale in (1.0, factor)]
+    base = {"max_pressure": 1.5e9, "e_over_a": 1.0} | TABLE
+    study = Study(name="scaled", level="summary", base=base, zip=lengths | {"profile": profiles})
+    with tempfile.TemporaryDirectory() as folder:
+        states = run(study, Path(folder), workers=0)[0].states
+    ratios = [
+        states.numbers(name)[1] / states.numbers(name)[0] / factor**power
+        for name, power in (("peak_pressure", 0), ("approach", 1), ("end_load_last", 2))
+    ]
+    print(f"scaled: numbers differ by at most {np.abs(np.array(ratios) - 1).max():.0e}", flush=True)
+
+
 def overhead_of_distinct_contacts(contacts: int = 1000) -> None:
     """Print the processor time of cases that share no contact, less the time of the stand-in solver."""
     solver_seconds = 0.0
@@ -103,24 +149,33 @@ def peak_memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
 
 
-def solve_on_client(study: Study, folder: Path) -> RunReport:
-    """Solve a study with the stand-in solver on two workers of a cluster; print their largest memory."""
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "memory_limit": 0}
-    with LocalCluster(**options) as cluster, Client(cluster) as client:
-        report = run_study(study, folder, scheduler=client, progress=False, solver=solve_fake)
-        memories = [f"{memory:.0f} MB" for memory in client.run(peak_memory).values()]
-    print(f"client: scheduler and main process {peak_memory():.0f} MB, workers {', '.join(memories)}", flush=True)
-    return report
+def on_client(cases: int) -> None:
+    """Print the memory of a scheduler, two workers and the run for a tenth of the cases and for all; 100 contacts."""
+    contacts = {"max_pressure": np.linspace(1e9, 2e9, 10).tolist(), "e_over_a": np.linspace(0.0, 4.5, 10).tolist()}
+    with tempfile.TemporaryDirectory() as name, cluster(Path(name)) as address, Client(str(address)) as client:
+        for count in (cases // 10, cases):
+            sweep = contacts | {"friction": np.linspace(0.0, 0.2, count // 100).tolist()}
+            study = Study(name="client", level="summary", base=TABLE, sweep=sweep)
+            start_time = time.perf_counter()
+            report = run_study(study, Path(name, f"{count}"), scheduler=client, progress=False)
+            seconds = time.perf_counter() - start_time
+            assert report.counts == {"ok": count}, report.counts
+            workers = ", ".join(f"{memory:.0f}" for memory in client.run(peak_memory).values())
+            print(
+                f"client: {count} cases, {seconds:.0f} s, {len(report.files)} files; largest memory so far: scheduler "
+                f"{client.run_on_scheduler(peak_memory):.0f} MB, workers {workers} MB, run {peak_memory():.0f} MB",
+                flush=True,
+            )
 
 
-def files(cases: int, level: str, *, on_client: bool) -> None:
+def files(cases: int, level: str) -> None:
     """Print files, bytes, memory and time to open a study of many cases with the stand-in solver."""
     sweep = {"max_pressure": np.linspace(1e9, 2e9, 10).tolist(), "friction": np.linspace(0, 0.2, cases // 100).tolist()}
     base = BASE | {"roller_length": 0.3e-3}
     study = Study(name="files", level=level, base=base, sweep=sweep | {"e_over_a": np.linspace(0, 4, 10).tolist()})
     with tempfile.TemporaryDirectory() as name:
         start_time = time.process_time()
-        report = solve_on_client(study, Path(name)) if on_client else run(study, Path(name), 0, solve_fake)[0]
+        report, _ = run(study, Path(name), 0, solve_fake)
         solving_seconds = time.process_time() - start_time
         size = sum(path.stat().st_size for path in report.files)
         count = len(report.files)
@@ -208,18 +263,22 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1, help="times to compare these")
     parser.add_argument("--cases", type=int, default=100_000, help="cases of the stand-in solver, for the files")
     parser.add_argument("--level", default="summary", help="arrays that these retain")
-    parser.add_argument("--client", action="store_true", help="solve these on a cluster of two worker processes")
+    parser.add_argument("--client", action="store_true", help="solve so many on a cluster of two workers, nothing else")
     options = parser.parse_args()
     os.environ.update(WORKER_ENVIRONMENT)
-    if not options.client:  # a plan of a million cases would be the largest memory
-        planning()
+    if options.client:  # the other parts would be the largest memory
+        on_client(options.cases)
+        return
+    planning()
     if options.frictions:
         overhead(options.frictions)
         overhead_of_distinct_contacts()
+        stacking()
+        scaled_lengths()
     if options.pairs:
         scaling(options.pairs, options.rounds)
     if options.cases:
-        files(options.cases, options.level, on_client=options.client)
+        files(options.cases, options.level)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ import queue
 import signal
 import threading
 import time
+import zlib
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
@@ -26,7 +27,7 @@ from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.profile_tables import user_profiles
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Outcome, Solver, Task, solve_task
+from contactstudy.study.worker import Outcome, Record, Solver, Task, solve_compressed_task, solve_task
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
@@ -241,9 +242,9 @@ class Tasks:
             task = self._returned.popleft()
         else:
             plan, cases = self._plan, list[PlannedCase]()
-            # Tasks of this size let all workers end at about the same time.
+            # Tasks of this size let all workers end at about the same time; one worker needs no balance.
             size = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
-            limit = int(min(size, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
+            limit = int(min(size, self.remaining / (2 * workers - 1))) if self._cases else 1
             while self._groups and (not cases or len(cases) + len(self._groups[0]) <= limit):
                 cases += [plan[index] for index in self._groups.popleft()]
             profiles = user_profiles([case.parameters for case in cases])
@@ -251,9 +252,11 @@ class Tasks:
         self.remaining -= len(task.cases)
         return task
 
-    def record(self, cases: int, seconds: float) -> None:
-        """Add the time of a finished task."""
-        self._seconds, self._cases = self._seconds + seconds, self._cases + cases
+    def finish(self, task: Task, records: list[Record], seconds: float) -> list[Outcome]:
+        """Add the time of a finished task; return its outcomes."""
+        self._seconds, self._cases = self._seconds + seconds, self._cases + len(records)
+        case_of = {case.id: case for case in task.cases}
+        return [Outcome(case_of[identity], status, message) for identity, status, message in records]
 
     def return_task(self, task: Task, *, died: bool) -> list[PlannedCase]:
         """Return a task to the queue, divided if its worker died; returns cases with which two workers died."""
@@ -278,9 +281,7 @@ def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print)
         while tasks:
             task = tasks.next_task(1)
             start_time = time.monotonic()
-            outcomes = solve_task(task, engine.solver)
-            tasks.record(len(outcomes), time.monotonic() - start_time)
-            yield outcomes
+            yield tasks.finish(task, solve_task(task, engine.solver), time.monotonic() - start_time)
         return
     with engine.client(tasks.remaining, notify) as client:
         yield from _distribute(client, Workers(client, engine.wait, notify), tasks, engine.solver)
@@ -336,9 +337,10 @@ class Workers:
 def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver | None) -> TaskResults:
     """Keep every worker busy with one task until the queue is empty."""
     from distributed import KilledWorker
+    from distributed.protocol.pickle import dumps
 
-    finished_futures: queue.SimpleQueue[Future[list[Outcome]]] = queue.SimpleQueue()
-    running: dict[Future[list[Outcome]], tuple[str, Task, float]] = {}
+    finished_futures: queue.SimpleQueue[Future[list[Record]]] = queue.SimpleQueue()
+    running: dict[Future[list[Record]], tuple[str, Task, float]] = {}
     try:
         while tasks or running:
             usable = workers.usable(bool(running))
@@ -346,15 +348,8 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
             for worker in sorted(usable - busy):
                 if tasks:
                     task = tasks.next_task(len(usable))
-                    future = client.submit(
-                        solve_task,
-                        task,
-                        solver,
-                        key=f"task-{id(task):x}-{time.monotonic_ns():x}",
-                        workers=[worker],
-                        pure=False,
-                        retries=0,
-                    )
+                    compressed_task = zlib.compress(dumps((task, solver)))
+                    future = client.submit(solve_compressed_task, compressed_task, workers=[worker], pure=False)
                     running[future] = (worker, task, time.monotonic())
                     future.add_done_callback(finished_futures.put)
             lost_futures = [future for future, (worker, _, _) in running.items() if worker not in usable]
@@ -365,9 +360,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                 continue
             error = future.exception() if future.status == "error" else None
             if future.status == "finished":
-                outcomes = future.result()
-                tasks.record(len(outcomes), time.monotonic() - start_time)
-                yield outcomes
+                yield tasks.finish(task, future.result(), time.monotonic() - start_time)
             elif future.status in ("cancelled", "lost"):
                 raise StudyFileError(SCHEDULER_LOST)
             elif isinstance(error, ImportError):

@@ -3,6 +3,7 @@
 import socket
 import time
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -60,17 +61,19 @@ def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
 
 @pytest.mark.system
 def test_cluster_of_separate_processes(two_workers, tmp_path):
-    """By the scheduler's address, and by a client, which the run leaves open."""
+    """By the scheduler's address, and by a client, which the run leaves open and gives bytes instead of cases."""
     from distributed import Client
 
     study = small_study("large", sweep=LARGE)
     run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
-    with Client(str(two_workers)) as client:
+    with Client(str(two_workers)) as client, mock.patch.object(client, "submit", wraps=client.submit) as submit:
         for scheduler in (two_workers, client):
             folder = tmp_path / type(scheduler).__name__
             assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
             assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
         assert client.status == "running"
+    # The scheduler's memory would contain objects for every case of a task.
+    assert {type(argument) for call in submit.call_args_list for argument in call.args[1:]} == {bytes}
 
 
 @pytest.mark.system

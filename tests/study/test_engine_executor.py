@@ -4,6 +4,7 @@ import pytest
 
 from contactstudy.study import StudyFileError
 from contactstudy.study.engine import Engine, Tasks, Workers, execute
+from contactstudy.study.settings import RUN
 from contactstudy.study.worker import Task
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
@@ -28,13 +29,22 @@ def test_groups_contain_the_frictions_of_a_contact(many_cases):
     assert coupled_study.plan().groups.tolist() == list(range(8))
 
 
-def test_task_size_follows_measured_time(many_cases):
+@pytest.mark.parametrize(("workers", "cases"), [(1, 6), (2, 2)])
+def test_task_size_follows_measured_time(many_cases, workers, cases):
     tasks = tasks_of(many_cases, [[0, 1], [2, 3], [4, 5], [6, 7]])
-    first_task = tasks.next_task(1)
+    first_task = tasks.next_task(workers)
     assert len(first_task.cases) == 2
-    tasks.record(2, 0.1)
-    assert len(tasks.next_task(1).cases) == 2  # half of six cases, in whole groups
-    assert tasks.remaining == 4
+    tasks.finish(first_task, [(case.id, "ok", "") for case in first_task.cases], 0.1)
+    assert len(tasks.next_task(workers).cases) == cases  # of six; two workers: a third, in whole groups
+    assert tasks.remaining == 6 - cases
+
+
+def test_one_worker_receives_tasks_of_full_length(many_cases):
+    """A halved rest would end in ever smaller tasks, each with a file of its own."""
+    tasks = tasks_of(many_cases, [[0], [1], [2], [3], [4], [5], [6], [7]])
+    task = tasks.next_task(1)
+    tasks.finish(task, [(task.cases[0].id, "ok", "")], RUN.task_seconds / 3)
+    assert [len(tasks.next_task(1).cases) for _ in range(3)] == [3, 3, 1]
 
 
 def test_case_fails_at_second_worker_death(many_cases):
