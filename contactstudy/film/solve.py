@@ -255,7 +255,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
 
 def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:
     """Errors of films of some thicknesses from their relative errors by direction."""
-    return (np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR) * thicknesses
+    return np.asarray((np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR) * thicknesses)
 
 
 def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:

@@ -50,10 +50,16 @@ def test_edge_peak_matches_small_fillet() -> None:
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     """The end pressure is 0.497 p0, extrapolated from columns down to 0.003 a."""
-    computed = refined_at(
-        Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
-    ).refined
+    case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
+    contact = refined_at(case)
+    computed, values = contact.refined, refined_values(case, contact)
     assert computed.laws == [None, None]
+    assert float(values["peak_pressure"]) == max(float(values[f"peak_pressure_{end}"]) for end in ("first", "last"))
+    grid, pressure = contact.contact.shape.grid, contact.contact.pressure
+    assert float(values["end_load_first"]) == pytest.approx(
+        grid.dy * pressure.sum(axis=1) @ np.diff(np.minimum(grid.x_edges, A))
+    )
+    assert float(values["end_pressure_first"]) == computed.values["end_pressure"][0]
     for end, error in zip(computed.values["end_pressure"], computed.errors["end_pressure"], strict=True):
         assert end / PRESSURE == pytest.approx(0.497, abs=0.005)
         assert abs(end / PRESSURE - 0.497) <= error / PRESSURE <= 0.01
