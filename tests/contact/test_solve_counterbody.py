@@ -165,19 +165,23 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     np.testing.assert_allclose(computed.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
-def test_exchanged_bodies_have_equal_pressure():
+@pytest.mark.parametrize("start", [1, 2])
+def test_exchanged_bodies_have_equal_pressure_and_approach(start: int):
     long_body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
     short_body = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
-    short_counterbody, long_counterbody = Counterbody(short_body, HALF_WIDTH), Counterbody(long_body, -HALF_WIDTH)
+    short_counterbody = Counterbody(short_body, start * HALF_WIDTH)
+    long_counterbody = Counterbody(long_body, -start * HALF_WIDTH)
+    columns = slice(4 * start, 4 * start + 24)
     gap = contact_shape(long_body, short_counterbody, 32, long_body.length)
-    exchanged = gap.isel(x=slice(4, 28)).assign_coords(x=gap.x[4:28] - HALF_WIDTH)
+    exchanged = gap.isel(x=columns).assign_coords(x=gap.x[columns] - start * HALF_WIDTH)
     settings = ContactSettings(coupled=True, tolerance=1e-8)
     contact = solve_contact(long_body, gap, load=100.0, friction=0.4, counterbody=short_counterbody, settings=settings)
     variant = solve_contact(
         short_body, exchanged, load=100.0, friction=-0.4, counterbody=long_counterbody, settings=settings
     )
-    pressure = contact.pressure.values[4:28]
+    pressure = contact.pressure.values[columns]
     assert np.abs(pressure - variant.pressure.values).max() < 2e-6 * pressure.max()
+    assert float(contact.approach) == pytest.approx(float(variant.approach), rel=1e-6)
 
 
 @pytest.mark.parametrize("load_position", [4.0, 4.8])

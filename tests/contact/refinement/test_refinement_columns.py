@@ -104,8 +104,9 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
 @pytest.mark.parametrize("slope", [0.1, -0.1])
 def test_straight_incline_adds_no_columns(slope: float) -> None:
     """The incline rises by more than the depth within a column, but never leaves its chord."""
-    baseline, inclined = first_edges(axial_shape(np.zeros_like)), first_edges(axial_shape(lambda x: slope * x))
-    assert inclined == pytest.approx(baseline)
+    baseline, incline = first_edges(axial_shape(np.zeros_like)), axial_shape(lambda x: slope * x)
+    for nodes in (np.zeros(0), np.linspace(1.0, 19.0, 50)):
+        assert first_edges(replace(incline, nodes=nodes)) == pytest.approx(baseline)
 
 
 def test_curved_shape_reaches_maximum_columns() -> None:
@@ -132,6 +133,15 @@ def test_first_columns_contain_narrow_ridges(position: float, width: float) -> N
     columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
     assert columns.size
     assert columns.max() <= 0.1
+
+
+@pytest.mark.parametrize("position", [5.1, 7.43, 12.77])
+def test_first_columns_contain_ridges_at_nodes(position: float) -> None:
+    """A ridge between all sampled points, with its crest at a node."""
+    ridge_shape = axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.maximum(1 - np.abs(x - position) / 1e-3, 0.0))
+    edges = first_edges(replace(ridge_shape, nodes=np.array([2.0, position, 17.0])))
+    column = np.searchsorted(edges, position) - 1
+    assert np.diff(edges)[column] <= MIN_CHORD_WIDTH
 
 
 def test_close_corners_are_edges() -> None:
