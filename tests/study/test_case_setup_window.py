@@ -1,6 +1,7 @@
 """A study widens the window for a wide contact like `solve`."""
 
 import numpy as np
+import pytest
 
 from contactstudy import solve
 from contactstudy.case.gridding import create_widening_grids, solve_in_first_window
@@ -23,14 +24,20 @@ WIDE = {
 }
 
 
-def test_default_window_is_widened(tmp_path):
-    study = small_study(base=WIDE, sweep={})
+RIDGE = {"roller_length": 5.5e-3, "max_pressure": 1e8, "cells_x": 0.5, "cells_y": 1.0}
+RIDGE |= {"profile": {"kind": "full-crown", "crown_radius": 5e-3}}  # wider than eight Hertz half-widths
+
+
+@pytest.mark.parametrize("changes", [{}, RIDGE])
+def test_default_window_is_widened(tmp_path, changes):
+    base = WIDE | changes
+    study = small_study(base=base, sweep={})
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
-    setup = build_setup(WIDE)
+    setup = build_setup(base)
     first_case = setup.grid
     separate_result = solve_in_first_window(
-        create_widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False)
+        create_widening_grids(setup.case, **setup.cells), lambda grid: solve(setup.case, grid, stresses=False)
     )
     stored_case = load_case(tmp_path, study.plan()[0].id)
     assert separate_result.sizes["y"] > first_case.cells_y

@@ -18,7 +18,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.models import Body, BodyWithFreeEnds
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.case.case import MAX_HALF_WIDTH, MIN_HALF_WIDTH, Case
-from contactstudy.case.gridding import graded_grid, solve_in_first_window
+from contactstudy.case.gridding import WINDOWS, graded_grid, solve_in_first_window
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
@@ -39,10 +39,6 @@ from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
-
-WINDOWS = (2.0, 3.0, 5.0, 8.0, *(12.0 * 1.5 ** np.arange(10)).tolist())
-"""Half-widths of the window over the Hertz half-width, tried in turn. A ridge that carries the load of the longest
-roller, of 1e7 half-widths, is 300 wide. Speed."""
 
 WINDOW_FACTOR, WINDOW_FACTOR_COUPLED, WINDOW_FACTOR_ROLLING = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
