@@ -34,7 +34,7 @@ class Task:
     radius: float = 5e-3
     speed: float = 2.0
     pressures: tuple[float, ...] = (0.8e9, 1.2e9, 1.6e9)
-    crowns: tuple[float, ...] = (0.25, 0.5, 1.0, 1.5, 2.5, 5.0, 8.0, 12.0, 20.0)
+    crowns: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.5, 2.5)
     """Drops over those of Lundberg's profile for each pressure."""
     accuracy: float = 0.1
 
