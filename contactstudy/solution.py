@@ -147,7 +147,7 @@ def with_stresses(
     case, refined, scale = contact.case, bool(contact.values), contact.case.hertz_half_width
     grid, pressure = contact.contact.shape.grid, contact.contact.pressure
     loads = contact.tractions.loads if contact.tractions else sliding(pressure, case.friction_on(grid.x))
-    search = place_search(case.body, loads, grid)
+    search = place_search(case.body, loads, grid, case.roller.material)
     is_loaded = np.asarray(pressure.any(axis=1))
     columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
     depths = default_depths(scale, search.peak_width) if z is None else z

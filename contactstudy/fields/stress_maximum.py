@@ -16,6 +16,7 @@ from scipy import ndimage
 
 from contactstudy.arrays.grid import TOP_ERROR, Grid, Points
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
+from contactstudy.bodies.material import Material, dundurs_parameter
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.fields.loads import Loads
@@ -44,7 +45,7 @@ class Border:
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
     # The bound less the traction grows inside the border like a square root.
 
-    def __init__(self, loads: Loads, poisson: float, inside_rim: BoolArray) -> None:
+    def __init__(self, loads: Loads, materials: tuple[Material, Material | None], inside_rim: BoolArray) -> None:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -76,7 +77,9 @@ class Border:
         )  # (x, y): error of the stress on the top, Pa
         self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
         self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
-        self.poisson = poisson
+        # In cells that stick the relative strain along y is constant, and the tractions' stress is 2 beta p.
+        along_y, poisson = 1 - 2 * dundurs_parameter(*materials), materials[0].poisson
+        self.pressure_stresses = np.array([poisson * (1 + along_y), along_y, 1.0])  # -xx, -yy, -zz over the pressure
 
 
 class Search(NamedTuple):
@@ -110,20 +113,20 @@ class Search(NamedTuple):
         """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the representing cells."""
         columns, rows = np.ix_(*self.cells(points))
         corrected_stresses, rise = stresses.copy(), self.border.rise[columns, rows, None]
-        corrected_stresses[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
+        corrected_stresses[:3] -= self.border.pressure_stresses[:, None, None, None] * rise
         corrected_stresses[4:] = np.where(
             rise != 0, -self.border.traction[:, columns, rows, None], corrected_stresses[4:]
         )
         return corrected_stresses
 
 
-def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
-    """Points of the search; they do not depend on the friction."""
+def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None = None) -> Search:
+    """Points of the search, which do not depend on the friction; without `roller` the roller is rigid."""
     extent, pressure = body.extent, loads[Load.NORMAL].values
     column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.
     inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
-    border = Border(loads, body.material.poisson, inside_rim)
+    border = Border(loads, (body.material, roller), inside_rim)
     if not column_maxima.any():
         return Search(grid, extent, inside_rim, border, samples=[], peak_width=np.inf)
     samples: list[Points] = []

@@ -79,6 +79,20 @@ def check_stress_maximum(friction: float, force_fraction: float, max_error: floa
     return result
 
 
+def test_stress_maximum_at_border_below_rigid_roller() -> None:
+    """Under unlike bodies the pressure strains the sticking cells; cells four times finer along y are the reference."""
+    roller = cs.Roller(radius=RADIUS, length=0.3e-3, profile=cs.profiles.Ellipsoid(crown_radius=20e-3), ends="none")
+    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.4)
+    creepage = 0.86 * 0.4 * case.hertz_half_width / RADIUS
+    case = replace(case, motion=cs.Rolling(longitudinal_creepage=creepage))
+    result = cs.solve(case, accuracy=0.1, y=[0.0], z=[0.0])
+    edges = np.append(result.x_bounds.values[:, 0], result.x_bounds.values[-1, 1])
+    half_step = 0.5 * float(result.y[1] - result.y[0])
+    window = (float(result.y[0]) - half_step, float(result.y[-1]) + half_step)
+    reference = cs.solve(case, cs.Grid.between(edges, window, 4 * result.sizes["y"]), y=[0.0], z=[0.0])
+    assert float(result.peak_von_mises) == pytest.approx(float(reference.peak_von_mises), rel=0.01)
+
+
 @pytest.mark.parametrize(
     ("body", "creepage"),
     [
