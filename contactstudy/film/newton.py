@@ -44,7 +44,7 @@ class FilmSettings:
     max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
     max_pressure_change : float
-        Largest change of the pressure in one step, over p0. Speed.
+        Largest change of the pressure in one step, over the largest pressure. Speed.
     closed_film_ratio, nearly_closed_ratio : float
         Film over the central film below which an iteration ends, and below which a failure is a closed film.
     """
@@ -301,7 +301,7 @@ class _Iteration:
         motion = change[cell_count:]
         distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
         max_change = float(np.abs(pressure).max())
-        step_fraction = min(1.0, settings.max_pressure_change / max(max_change, 1e-300))
+        step_fraction = min(1.0, settings.max_pressure_change * float(state.pressure.max()) / max(max_change, 1e-300))
         linear_distance = state.distance + step_fraction * distance
         # Only closing cells are bounded. Between rough surfaces the film, not the distance, is linear in the step; the
         # next step removes the mismatch.
