@@ -44,7 +44,7 @@ class FilmSettings:
     max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
     max_pressure_change : float
-        Largest change of the pressure in one step, over p0 or, if larger, the largest pressure. Speed.
+        Largest change of the pressure in one step, over p0. Speed.
     closed_film_ratio, nearly_closed_ratio : float
         Film over the central film below which an iteration ends, and below which a failure is a closed film.
     """
@@ -297,11 +297,11 @@ class _Iteration:
         """Return the next state, the fraction of the step applied, and the largest change of the pressure."""
         problem, settings = self.problem, self.settings
         cell_count = problem.gap.size
-        pressure, motion = change[:cell_count].reshape(problem.gap.shape), change[cell_count:]
+        pressure = change[:cell_count].reshape(problem.gap.shape)
+        motion = change[cell_count:]
         distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
         max_change = float(np.abs(pressure).max())
-        max_pressure = max(1.0, float(state.pressure.max()))
-        step_fraction = min(1.0, settings.max_pressure_change * max_pressure / max(max_change, 1e-300))
+        step_fraction = min(1.0, settings.max_pressure_change / max(max_change, 1e-300))
         linear_distance = state.distance + step_fraction * distance
         # Only closing cells are bounded. Between rough surfaces the film, not the distance, is linear in the step; the
         # next step removes the mismatch.
