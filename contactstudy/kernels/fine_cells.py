@@ -80,9 +80,14 @@ class FineCells:
         return self._smooth.shape_loads(self.cell_loads.T)
 
     @cached_property
+    def _part_edges(self) -> FloatArray:
+        """Edges of the fine cells along x, metres; the load on the parts of a constant load is the same load."""
+        return _split_edges(self.grid.x_edges, np.full(self.grid.cells_x, not self._load_along_x.is_constant))
+
+    @cached_property
     def x_edges(self) -> FloatArray:
         """Edges of the fine cells along x and of their nearest images, metres."""
-        return mirror_edges(_split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool)), self.extent)
+        return mirror_edges(self._part_edges, self.extent)
 
     @cached_property
     def step_edges(self) -> FloatArray:
@@ -120,8 +125,8 @@ class FineCells:
         return np.asarray(z < MAX_REFINED_DEPTH * self.grid.dy)
 
     def is_refined_along_x(self, z: FloatArray) -> BoolArray:
-        """Whether uniform cells along x are refined at depths `z`."""
-        return np.asarray(z < MAX_REFINED_DEPTH * self.grid.dx)
+        """Whether uniform cells along x are refined at depths `z`; constant loads have equal cells at all depths."""
+        return np.asarray((z < MAX_REFINED_DEPTH * self.grid.dx) | self._load_along_x.is_constant)
 
     def column_means(self, edges: list[FloatArray]) -> FloatArray:
         """Means over the columns between the edges of each array: array (column, y); edges may lie among images."""
@@ -191,8 +196,8 @@ class FineCells:
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
         """Load on uniform cells split along x and y, and the grid."""
         # Points at the distance `offset` along y from the middles of cells are in the middles of fine cells.
-        edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
-        return self._refine_along_y(edges, self.column_means([edges]), self.shape_cells.column_means([edges]), offset)
+        columns, shape = (cells.column_means([self._part_edges]) for cells in (self, self.shape_cells))
+        return self._refine_along_y(self._part_edges, columns, shape, offset)
 
     def _refine_along_y(
         self, edges: FloatArray, columns: FloatArray, shape: FloatArray, offset: float

@@ -68,7 +68,9 @@ def image_kernel(
 
     for index in range(NEAR_IMAGES):
         add_spread_load(nearest + period * index - 0.5 * dx, nearest + period * index + 0.5 * dx, 1.0)
-    add_spread_load(spread_from, spread_to, dx / period)
+    # Gauss points of the cell: the spread load of a cell equals those of its parts.
+    for offset in (-dx / np.sqrt(12), dx / np.sqrt(12)):
+        add_spread_load(spread_from + offset, spread_to, 0.5 * dx / period)
     step = 0.1 * length
     for side_shift in (-step, step):
         slope = period / 24 * np.sign(side_shift) / (2 * step)  # eq. (32e)

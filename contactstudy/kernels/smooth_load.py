@@ -25,6 +25,7 @@ determine the end of a load."""
 MIN_NEIGHBOUR_RATIO = 0.5
 """Least ratio of the shape's means in neighbouring cells with a continuous ratio between them. Accuracy."""
 
+CONSTANT_ROUNDING = 1e-14  # rounding of a constant over the largest one. Accuracy.
 EMPTY_LEVEL = 1e-12  # uniform shape in cells without a shape, over the largest mean. Accuracy.
 
 MIN_LOADED_FRACTION = 0.5
@@ -85,7 +86,7 @@ class SmoothLoad:
         # The ratio on a face is a mean of the ratios at both cells' centres: no ratio is larger than all of these, and
         # tractions keep their bound. The cells keep the sum of their forces; coupled cells have one ratio.
         widths, count = np.diff(self.edges), cell_loads.shape[1]
-        force = self.moments_up_to(np.arange(count), self.edges[1:])[0]
+        (force,) = self.moments_up_to(np.arange(count), self.edges[1:], 0)
         is_empty = force == 0
         level = EMPTY_LEVEL * float(np.abs(force / widths).max(initial=0.0)) or 1.0
         force, cell_force = np.where(is_empty, level * widths, force), cell_loads * widths
@@ -112,27 +113,30 @@ class SmoothLoad:
     def _face_forces(self) -> tuple[FloatArray, FloatArray]:
         """Return forces of the shape times a ratio that rises from 0 at the centre to 1 on the first or last face."""
         cell, half_width = np.arange(self.edges.size - 1), 0.5 * np.diff(self.edges)
-        half_force, half_moment, _ = self.moments_up_to(cell, self.edges[:-1] + half_width)
-        force, moment, _ = self.moments_up_to(cell, self.edges[1:])
+        half_force, half_moment = self.moments_up_to(cell, self.edges[:-1] + half_width, 1)
+        force, moment = self.moments_up_to(cell, self.edges[1:], 1)
         last = (moment - half_moment) / half_width - (force - half_force)
         return np.abs(half_force - half_moment / half_width), np.abs(last)
 
-    def moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Force, first and second moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
+    def moments_up_to(self, cell: IntArray, x: FloatArray, order: int) -> list[FloatArray]:
+        """Moments from 0, the force, to `order` between the start of each `cell` and `x`, about the start: (row, x)."""
         width = np.diff(self.edges)[cell]
         fraction = np.clip((x - self.edges[cell]) / width, 0.0, 1.0)
         first, middle, last, knot, sign = (
             values[:, cell] for values in (self.first, self.middle, self.last, self.knot, self.sign)
         )
-        first_part = _moments_of_root(first, middle, np.minimum(fraction, knot), knot)
-        force, moment, second_moment = _moments_of_root(middle, last, np.maximum(fraction - knot, 0.0), 1 - knot)
-        second_moment += knot * (2 * moment + knot * force)
-        moment += knot * force
-        return (
-            sign * width * (first_part[0] + force),
-            sign * width**2 * (first_part[1] + moment),
-            sign * width**3 * (first_part[2] + second_moment),
-        )
+        moments = _moments_of_root(first, middle, np.minimum(fraction, knot), knot, order)
+        behind = _moments_of_root(middle, last, np.maximum(fraction - knot, 0.0), 1 - knot, order)
+        if order == 2:
+            behind[2] += knot * (2 * behind[1] + knot * behind[0])
+        if order:
+            behind[1] += knot * behind[0]
+        factor = sign * width
+        for moment, moment_behind in zip(moments, behind, strict=True):
+            moment += moment_behind
+            moment *= factor
+            factor = factor * width
+        return moments
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,25 +157,34 @@ class ShapedLoad:
     def _cell_moments(self) -> tuple[FloatArray, FloatArray]:
         """Force of each cell, and first moment about the cell's start: arrays (row, cell)."""
         cell = np.arange(self.edges.size - 1)
-        force, moment, _, _ = self._moments_up_to(cell, self.edges[1:])
+        force, moment = self._moments_up_to(cell, self.edges[1:], 1)[:2]
         return force, moment
 
-    def _moments_up_to(self, cell: IntArray, x: FloatArray) -> FloatArray:
-        """Force and first moment, of the load and of the shape, between each `cell`'s start and `x`: (4, row, x)."""
-        half_width = 0.5 * np.diff(self.edges)[cell]
-        half = self.shape.moments_up_to(cell, np.minimum(x, self.edges[cell] + half_width))
-        whole = self.shape.moments_up_to(cell, x)
+    @cached_property
+    def _has_constant_ratios(self) -> bool:
+        """Whether the ratio is constant in each cell, to rounding."""
+        return _are_constant(self.first, self.middle, self.last)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the load is constant in each cell, to rounding."""
+        return self._has_constant_ratios and _are_constant(self.shape.first, self.shape.middle, self.shape.last)
+
+    def _moments_up_to(self, cell: IntArray, x: FloatArray, order: int) -> list[FloatArray]:
+        """Moments between each `cell`'s start and `x`: the load's up to `order`, then the shape's up to `order + 1`."""
         first, middle, last = self.first[:, cell], self.middle[:, cell], self.last[:, cell]
+        whole = self.shape.moments_up_to(cell, x, order + 1)
+        if self._has_constant_ratios:
+            return [*(middle * moment for moment in whole[:-1]), *whole]
+        half_width = 0.5 * np.diff(self.edges)[cell]
+        half = self.shape.moments_up_to(cell, np.minimum(x, self.edges[cell] + half_width), order + 1)
         rise, start = (last - middle) / half_width, 2 * middle - last  # in the second half
         first_rise, start_change = (middle - first) / half_width, first - start
-        force, moment = (
-            start * whole[order]
-            + rise * whole[order + 1]
-            + start_change * half[order]
-            + (first_rise - rise) * half[order + 1]
-            for order in (0, 1)
-        )
-        return np.stack([force, moment, *whole[:2]])
+        moments = [
+            start * whole[i] + rise * whole[i + 1] + start_change * half[i] + (first_rise - rise) * half[i + 1]
+            for i in range(order + 1)
+        ]
+        return [*moments, *whole]
 
     @property
     def cell_means(self) -> FloatArray:
@@ -188,11 +201,7 @@ class ShapedLoad:
         """Integral of the load up to the positions: array (row, x)."""
         cell = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, self.edges.size - 2)
         force_before = np.pad(np.cumsum(self._cell_moments[0], axis=1), ((0, 0), (1, 0)))
-        return np.asarray(force_before[:, cell] + self._moments_up_to(cell, x)[0])
-
-    def means(self, edges: FloatArray) -> FloatArray:
-        """Means between other edges, metres: array (row, cell)."""
-        return np.asarray(np.diff(self.integral(edges), axis=1) / np.diff(edges))
+        return np.asarray(force_before[:, cell] + self._moments_up_to(cell, x, 0)[0])
 
     def equivalent_means(self, edges: FloatArray) -> FloatArray:
         """Return loads on cells between other edges, with the load's forces at the shape's centroids: (row, cell)."""
@@ -204,9 +213,8 @@ class ShapedLoad:
         cell_of_point = np.clip(np.searchsorted(edges, midpoints, side="right") - 1, 0, edges.size - 2)
         first_points = np.flatnonzero(np.append(True, np.diff(cell_of_point) > 0))
         # Differences of sums over all cells would lose digits.
-        sums, sums_to_start = self._moments_up_to(cell, points[1:]), self._moments_up_to(cell[:1], points[:1])
-        sums_before = np.concatenate([sums_to_start, sums[..., :-1]], axis=-1)
-        force, _, shape_force, moment = sums - np.where(np.append(False, np.diff(cell) > 0), 0.0, sums_before)
+        sums = np.stack(self._moments_up_to(np.append(cell[0], cell), points, 0))
+        force, shape_force, moment = sums[..., 1:] - np.where(np.append(True, np.diff(cell) == 0), sums[..., :-1], 0.0)
         moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * shape_force
         parts = np.stack([force, moment, np.sign(shape_force) * force, np.abs(shape_force)])
         force, moment, aligned_force, size = np.add.reduceat(parts, first_points, axis=-1)
@@ -337,6 +345,12 @@ class _DirectedRows:
         return np.sqrt(np.maximum(squared, 0.0))
 
 
+def _are_constant(first: FloatArray, middle: FloatArray, last: FloatArray) -> bool:
+    """Whether the values on the faces equal those in the middle of each cell, to rounding."""
+    deviation = np.maximum(np.abs(first - middle), np.abs(last - middle))
+    return bool((deviation <= CONSTANT_ROUNDING * np.abs(middle).max(initial=0.0)).all())
+
+
 def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
     """Mean of a function with a linear square, from the values at both ends."""
     total = a + b
@@ -344,18 +358,21 @@ def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _moments_of_root(
-    a: FloatArray, b: FloatArray, length: FloatArray, piece_length: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Force, first and second moment, about its start, of the first part of a piece with a linear square."""
+    a: FloatArray, b: FloatArray, length: FloatArray, piece_length: FloatArray, order: int
+) -> list[FloatArray]:
+    """Moments up to `order`, about its start, of the first part of a piece with a linear square."""
     # The part has the length `length`, the piece `piece_length`, and values `a` and `b` at its ends.
     end_square = a * a + (b * b - a * a) * (length / np.where(piece_length > 0, piece_length, 1.0))
     b = np.sqrt(np.maximum(end_square, 0.0))
     value_sum = np.where(a + b > 0, a + b, 1.0)
-    cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
-    powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-    first_moment = 2 / 15 * cubes / (value_sum * value_sum)
-    second_moment = 2 / 105 * powers / (value_sum * value_sum * value_sum)
-    return length * _mean_of_root(a, b), length**2 * first_moment, length**3 * second_moment
+    moments = [length * _mean_of_root(a, b)]
+    if order >= 1:
+        cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
+        moments.append(length**2 * (2 / 15 * cubes / (value_sum * value_sum)))
+    if order == 2:
+        powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
+        moments.append(length**3 * (2 / 105 * powers / (value_sum * value_sum * value_sum)))
+    return moments
 
 
 def _solve_knot_value(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:

@@ -100,10 +100,9 @@ def test_single_loaded_column_keeps_position(load: Load, extent: str, column: in
         cells_x=20,
         cells_y=9 * fine.cell_loads.shape[1],
     )
-    smooth = fine.shape_along_y(fine.cell_loads, fine.cell_loads).means(
-        np.linspace(*uniform.y_range, uniform.cells_y + 1)
-    )
-    spread = np.repeat(smooth, np.diff(GRADED), axis=0)
+    smooth_load = fine.shape_along_y(fine.cell_loads, fine.cell_loads)
+    means = np.diff(smooth_load.integral(np.linspace(*uniform.y_range, uniform.cells_y + 1)), axis=1) / uniform.dy
+    spread = np.repeat(means, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
         expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=EXTENTS[extent])
@@ -123,7 +122,8 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
     uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cell_loads.shape[1])
     along_x = fine.column_means([uniform.x_edges])
-    spread = fine.shape_along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
+    integral = fine.shape_along_y(along_x, along_x).integral(np.linspace(*y_range, uniform.cells_y + 1))
+    spread = np.diff(integral, axis=1) / uniform.dy
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
         expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)

@@ -17,6 +17,7 @@ from contactstudy.kernels.load import Load
 
 EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geomspace(0.04, 0.4, 23)])}
 INFLUENCE = stress_influence(Load.NORMAL, 0.3)
+Z_STEPS = np.array([0.0, 0.5, 3.0, 15.0])
 
 
 def test_unaligned_positions_equal_single_positions() -> None:
@@ -59,9 +60,9 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
     np.testing.assert_allclose(joint_field[:, :, compared], np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
 
 
-def pressure(grid: Grid) -> FloatArray:
-    """Pressure that decreases to zero inside its last cells along x and y."""
-    axial_profile = ((grid.x[:, None] - 2.0) / 1.7) ** 8
+def pressure(grid: Grid, half_length: float = 1.7) -> FloatArray:
+    """Pressure that decreases to zero inside its last cells along y, and within a finite half-length along x."""
+    axial_profile = ((grid.x[:, None] - 2.0) / half_length) ** 8
     return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - axial_profile, 0.0)))
 
 
@@ -87,6 +88,21 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
     )
     # The sums over images amplify rounding.
     assert np.abs(first_field + 2 * second_field - sum_field).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
+
+
+@pytest.mark.parametrize("kind", EDGES)
+@pytest.mark.parametrize("ended", [True, False])
+def test_load_on_whole_columns_adds_to_load_on_split_columns(kind: str, *, ended: bool) -> None:
+    extent = (0.0, 4.0) if ended else (-np.inf, np.inf)
+    grid = Grid.between(EDGES[kind] * 4.0 / EDGES[kind][-1], (-1.2, 1.2), 24)
+    uniform_load = pressure(grid, np.inf)
+    varying_load = uniform_load * np.random.default_rng(2).random(grid.shape)
+    points = Points(grid.x[::6] if kind == "uniform" else np.array([0.01, 1.3, 3.77]), grid.y[::4], grid.dy * Z_STEPS)
+    uniform_field, varying_field, sum_field = (
+        half_space_field(load, INFLUENCE, grid, points, extent=extent, shape=uniform_load)
+        for load in (uniform_load, varying_load, uniform_load + varying_load)
+    )
+    assert np.abs(uniform_field + varying_field - sum_field).max() < (1e-10 if ended else 1e-12)
 
 
 @pytest.mark.parametrize("kind", EDGES)

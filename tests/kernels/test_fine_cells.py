@@ -89,12 +89,20 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
         False,
         False,
     ]
-    load = np.where(np.abs(cells.grid.y) < 0.7, 1.0, 0.0) * np.ones(cells.grid.shape)
-    flat_cells = FineCells(load=load, shape=load, grid=cells.grid)
-    factors = MAX_REFINED_DEPTH * np.array([0.99, 1.01])
-    for refined_cells in (cells, flat_cells):
-        assert refined_cells.is_refined_along_x(cells.grid.dx * factors).tolist() == [True, False]
-        assert refined_cells.is_refined_along_y(cells.grid.dy * factors).tolist() == [True, False]
+    depths = cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])
+    assert cells.is_refined_along_x(depths).tolist() == [True, False]
+    assert cells.x_edges.size == 3 * PARTS_X * cells.grid.cells_x + 1  # with images
+
+
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+def test_constant_load_has_whole_columns(edges: FloatArray) -> None:
+    grid = make_fine_cells(edges=edges).grid
+    shape = np.where(np.abs(grid.y) < 0.7, 1.0, 0.0) * np.ones(grid.shape)
+    varying_load = shape * np.linspace(0.5, 1.0, grid.cells_x)[:, None]
+    cells, varying_cells = (FineCells(load=load, shape=shape, grid=grid) for load in (0.3 * shape, varying_load))
+    assert np.array_equal(cells.x_edges, grid.x_edges)
+    assert cells.is_refined_along_x(np.array([0.0, 100.0 * grid.dx])).all()
+    assert varying_cells.x_edges.size == PARTS_X * grid.cells_x + 1
 
 
 @pytest.mark.parametrize("image_sign", [1, -1])
