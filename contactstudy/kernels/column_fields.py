@@ -286,8 +286,13 @@ def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: 
         positions = x[start : start + POSITIONS_PER_BATCH].tolist()
         split_ranges = [_split_around(position, fine, max_width) for position in positions]
         shape_means = _means_of_inserted(split_ranges, shape)
-        load = fine.shape_along_y(shape_means if fine is shape else _means_of_inserted(split_ranges, fine), shape_means)
-        inserted_loads = [[] if part.radius else [layer.loads(load) for layer in part.layers] for part in parts]
+        means = shape_means if fine is shape else _means_of_inserted(split_ranges, fine)
+        # Neighbouring positions have equal columns.
+        _, first, column = np.unique(np.hstack([means, shape_means]), axis=0, return_index=True, return_inverse=True)
+        load = fine.shape_along_y(means[first], shape_means[first])
+        inserted_loads = [
+            [] if part.radius else [layer.loads(load)[column.ravel()] for layer in part.layers] for part in parts
+        ]
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
             first, stop = stop, stop + split_range.inserted.size - 1
