@@ -282,21 +282,20 @@ def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: 
     shape = fine.shape_cells
     load = fine.shape_along_y(fine.far_load, shape.far_load)
     loads = [[add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in part.layers] for part in parts]
-    for start in range(0, x.size, POSITIONS_PER_BATCH):
-        positions = x[start : start + POSITIONS_PER_BATCH].tolist()
+    for first_position in range(0, x.size, POSITIONS_PER_BATCH):
+        positions = x[first_position : first_position + POSITIONS_PER_BATCH].tolist()
         split_ranges = [_split_around(position, fine, max_width) for position in positions]
         shape_means = _means_of_inserted(split_ranges, shape)
         means = shape_means if fine is shape else _means_of_inserted(split_ranges, fine)
         # Neighbouring positions have equal columns.
         _, first, column = np.unique(np.hstack([means, shape_means]), axis=0, return_index=True, return_inverse=True)
         load = fine.shape_along_y(means[first], shape_means[first])
-        inserted_loads = [
-            [] if part.radius else [layer.loads(load)[column.ravel()] for layer in part.layers] for part in parts
-        ]
+        inserted_loads = [[] if part.radius else [layer.loads(load) for layer in part.layers] for part in parts]
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
-            first, stop = stop, stop + split_range.inserted.size - 1
-            split_loads = [[layer_loads[first:stop] for layer_loads in part_loads] for part_loads in inserted_loads]
+            start, stop = stop, stop + split_range.inserted.size - 1
+            rows = column.ravel()[start:stop]
+            split_loads = [[layer_loads[rows] for layer_loads in part_loads] for part_loads in inserted_loads]
             yield _jumps_around(position, parts, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
 
 

@@ -258,6 +258,9 @@ def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> Float
 class AuxiliaryLoads(NamedTuple):
     """Loads on the auxiliary bodies, for one wavenumber along y, per direction of the load."""
 
+    modes: AxialModes
+    lateral: float  # wavenumber ``k_y``, 1/m
+    poisson: float
     equivalent: list[ComplexArray]
     """Weighted spectra (wavenumber, column), before `cosine`, of the load added on H's top."""
     depth: ComplexArray  # depth wavenumbers on their ray, where the face loads are an analytic function
@@ -354,7 +357,14 @@ class EquationSet:
                 face_load += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
             equivalent_loads.append(equivalent)
             face_loads.append(weights[:, None] * face_load)
-        return AuxiliaryLoads(equivalent_loads, depth, face_loads)
+        return AuxiliaryLoads(
+            modes=self.modes,
+            lateral=self.lateral,
+            poisson=self.poisson,
+            equivalent=equivalent_loads,
+            depth=depth,
+            face_load=face_loads,
+        )
 
     def ray_nodes(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
         """Depth wavenumbers on their ray, and the weights of the quadrature."""

@@ -16,9 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.grid import Points
+from contactstudy.cache import ArrayKey, recall, retain
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.equations import DECAY_LENGTHS, EquationSet, real_product
+from contactstudy.overlapping.equations import DECAY_LENGTHS, AuxiliaryLoads, AxialModes, EquationSet, real_product
 from contactstudy.overlapping.problem import (
     EndProblem,
     LateralColumns,
@@ -37,14 +38,10 @@ POSITION_DIGITS = 12  # digits to which positions over the length are compared f
 class Harmonics:
     """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y."""
 
-    of_equivalent_load: Callable[
-        [EquationSet, Sequence[ComplexArray], ComplexArray, ComplexArray, FloatArray], FloatArray
-    ]
-    """From equation set, equivalent loads (wavenumber, column), cosine and sine (wavenumber, x) and depths to
-    amplitudes (load, component, x, z, column)."""
-    of_face_load: Callable[[EquationSet, ComplexArray, Sequence[ComplexArray], FloatArray, FloatArray], FloatArray]
-    """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
-    to amplitudes of the same shape."""
+    of_equivalent_load: Callable[[AuxiliaryLoads, ComplexArray, ComplexArray, FloatArray], FloatArray]
+    """From auxiliary loads, cosine, sine (wavenumber, x) and depths to amplitudes (load, component, x, z, column)."""
+    of_face_load: Callable[[AuxiliaryLoads, FloatArray, FloatArray], FloatArray]
+    """From auxiliary loads, distances from the end and depths to amplitudes of the same shape."""
     count: int  # number of components
     even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
@@ -244,26 +241,40 @@ def _amplitudes(
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
         for node, lateral in enumerate(columns.nodes.tolist()):
-            system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
-            loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
+            loads = _auxiliary_loads(view.modes, lateral, spectrum, problem, shortest)
             for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):
                 if not indices.size:
                     continue
                 cosine, sine = view.cosine[:, indices], view.sine[:, indices]
-                field = harmonics.of_equivalent_load(system, loads.equivalent, cosine, sine, z)
-                field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
+                field = harmonics.of_equivalent_load(loads, cosine, sine, z)
+                field += harmonics.of_face_load(loads, view.x[indices], z)
                 rows, depths = (view.rows[indices] - start)[:, None, None], np.arange(z.size)[:, None]
                 amplitude[:, :, rows, depths, node, view.columns] = field
     return amplitudes
 
 
+def _auxiliary_loads(
+    modes: AxialModes, lateral: float, spectrum: ComplexArray, problem: EndProblem, shortest: float
+) -> AuxiliaryLoads:
+    """Solve for the auxiliary loads under a weighted spectrum, which all points share."""
+    arrays = ArrayKey(np.append(modes.wavenumbers, spectrum).view(np.float64))
+    settings = (problem.loads, problem.poisson, problem.resolution, shortest)
+    key = (type(modes), modes.length, modes.parity, arrays, lateral, *settings)
+    loads: AuxiliaryLoads | None = recall("auxiliary loads", key)
+    if loads is None:
+        system = EquationSet.build(modes, lateral, problem.poisson, shortest, problem.resolution)
+        loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
+        loads = retain("auxiliary loads", key, loads)
+    return loads
+
+
 def _stress_of_equivalent_load(
-    system: EquationSet, equivalent: Sequence[ComplexArray], cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+    loads: AuxiliaryLoads, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
     """Stresses of H under the equivalent load, by the harmonics of a pressure: (load, 6, x, z, column)."""
-    nu, lateral = system.poisson, system.lateral
-    axial = system.modes.wavenumbers
+    nu, lateral, equivalent = loads.poisson, loads.lateral, loads.equivalent
+    axial = loads.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
     c2, s2 = (axial / k) ** 2, (lateral / k) ** 2  # eq. (9)
     decay = np.exp(-np.outer(k, z))
@@ -286,15 +297,14 @@ def _stress_of_equivalent_load(
     return stresses
 
 
-def _stress_of_face_load(
-    system: EquationSet, depth: ComplexArray, face_load: Sequence[ComplexArray], x: FloatArray, z: FloatArray
-) -> FloatArray:
+def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
     """Stresses of V under the face loads on its two ends: (load, 6, x, z, column)."""
     # The slab's harmonics are two half-space harmonics that start from either end; with ``X = kappa`` times the
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
-    nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, along_z = _face_waves(system, depth, z)
+    nu, lateral, modes = loads.poisson, loads.lateral, loads.modes
+    depth, face_load = loads.depth, loads.face_load
+    kappa, tau, along_z = _face_waves(loads, z)
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
     decay, x_times_decay = _decay_from_end(x, kappa, tau)
     even_growth = odd_growth = x_times_decay
@@ -316,20 +326,18 @@ def _stress_of_face_load(
     np.multiply(depth / kappa, odd_growth, out=sine_z[1])
     sine_z *= -1j
     stresses = np.empty((len(face_load), 6, x.size, z.size, face_load[0].shape[1]))
-    for load_stresses, loads in zip(stresses, face_load, strict=True):
-        face_waves = along_z[..., None] * loads[:, None, :]
+    for load_stresses, columns in zip(stresses, face_load, strict=True):
+        face_waves = along_z[..., None] * columns[:, None, :]
         load_stresses[[0, 1, 2, 3]] = real_product(cosine_z, face_waves)
         load_stresses[[5, 4]] = real_product(sine_z, face_waves)
     return stresses
 
 
-def _face_waves(
-    system: EquationSet, depth: ComplexArray, z: FloatArray
-) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+def _face_waves(loads: AuxiliaryLoads, z: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z) of V from either face per unit load."""
-    kappa = np.sqrt(depth**2 + system.lateral**2)
-    amplitude, tau = system.modes.face_amplitude(kappa)
-    return kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(depth, z))
+    kappa = np.sqrt(loads.depth**2 + loads.lateral**2)
+    amplitude, tau = loads.modes.face_amplitude(kappa)
+    return kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
 
 
 def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -352,11 +360,11 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
 
 
 def _displacement_of_equivalent_load(
-    system: EquationSet, equivalent: Sequence[ComplexArray], cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+    loads: AuxiliaryLoads, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
     """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: (load, 3, x, z, column)."""
-    nu, lateral = system.poisson, system.lateral
-    axial = system.modes.wavenumbers
+    nu, lateral, equivalent = loads.poisson, loads.lateral, loads.equivalent
+    axial = loads.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
     decay = np.exp(-np.outer(k, z))
     compressibility = 1 - 2 * nu
@@ -374,13 +382,11 @@ def _displacement_of_equivalent_load(
     return displacements
 
 
-def _displacement_of_face_load(
-    system: EquationSet, depth: ComplexArray, face_load: Sequence[ComplexArray], x: FloatArray, z: FloatArray
-) -> FloatArray:
+def _displacement_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
     """``2 G u`` of V under the face loads on its two ends: (load, 3, x, z, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
-    nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, along_z = _face_waves(system, depth, z)
+    nu, lateral, modes, depth = loads.poisson, loads.lateral, loads.modes, loads.depth
+    kappa, tau, along_z = _face_waves(loads, z)
     along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
     ends = [(x, 1, 1)]
     if modes.parity:
@@ -393,7 +399,7 @@ def _displacement_of_face_load(
         along_x[1] -= even_sign * lateral / kappa**2 * potential
         along_x[2] += even_sign * depth / kappa**2 * potential
     along_x[2] *= -1j
-    return np.stack([real_product(along_x, along_z[..., None] * loads[:, None, :]) for loads in face_load])
+    return np.stack([real_product(along_x, along_z[..., None] * columns[:, None, :]) for columns in loads.face_load])
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``

@@ -344,7 +344,9 @@ class EndProblem:
     def panels(self, y: FloatArray, shortest: float, reference: float | None = None) -> list[LateralPanel]:
         """Panels along ``k_y`` for points at `y` no nearer than `shortest` to a loaded corner."""
         grid = self.grid
-        max_distance = max(map(abs, grid.y_range)) + np.abs(y).max()
+        # Points inside the window have equal panels: they share the auxiliary loads.
+        half_window = max(map(abs, grid.y_range))
+        max_distance = half_window + max(half_window, np.abs(y).max())
         poles = BENDING_POLES if self.sign_x < 0 else POLES
         first_panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
         first_wavenumber = first_panel_factor / min(self.length, 4 * max(grid.x_range[1], max_distance))

@@ -9,9 +9,9 @@ import pytest
 
 from contactstudy import Grid
 from contactstudy.arrays.grid import Points
-from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.equations import AuxiliaryLoads
 from contactstudy.overlapping.field import DISPLACEMENT, STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -48,11 +48,9 @@ def count_evaluated_points(point_sets: list[Points]) -> int:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
 
-    def beside(
-        system: EquationSet, depth: ComplexArray, loads: ComplexArray, x: FloatArray, z: FloatArray
-    ) -> FloatArray:
+    def beside(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
         sizes.append(x.size * z.size)
-        return STRESS.of_face_load(system, depth, loads, x, z)
+        return STRESS.of_face_load(loads, x, z)
 
     problem = EndProblem(
         length=8.0,

@@ -9,8 +9,7 @@ import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping import field as end_field
-from contactstudy.overlapping.equations import AxialModes, EquationSet, SingleMirrorModes, coupling_core
-from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.equations import AuxiliaryLoads, AxialModes, SingleMirrorModes, coupling_core
 
 LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3
 RAY = np.exp(0.4j) * np.array([0.3, 1.1, 2.6])
@@ -44,22 +43,25 @@ STEP = 1e-4
 Field = Callable[[FloatArray, FloatArray], FloatArray]
 
 
-def system_of(modes: AxialModes) -> EquationSet:
-    return EquationSet.build(modes, LATERAL, POISSON, 0.5, Resolution())
+def loads_of(modes: AxialModes, *, equivalent: ComplexArray, depth: ComplexArray, face: ComplexArray) -> AuxiliaryLoads:
+    """Loads of one direction on the auxiliary bodies."""
+    return AuxiliaryLoads(
+        modes=modes, lateral=LATERAL, poisson=POISSON, equivalent=[equivalent], depth=depth, face_load=[face]
+    )
 
 
 def field_of_h(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
     """Field of H under an equivalent load of two columns."""
-    system, load = system_of(modes), WEIGHTS[: modes.wavenumbers.size]
-    return lambda x, z: field(system, [load], modes.cosine(x), modes.sine(x), z)[0]
+    loads = loads_of(modes, equivalent=WEIGHTS[: modes.wavenumbers.size], depth=RAY[:2], face=WEIGHTS[:2])
+    return lambda x, z: field(loads, modes.cosine(x), modes.sine(x), z)[0]
 
 
 def evaluate_beside_end(
     modes: AxialModes, field: Callable[..., FloatArray], depth: ComplexArray = RAY[:2], load: ComplexArray = WEIGHTS[:2]
 ) -> Field:
     """Field of V under face loads of two columns."""
-    system = system_of(modes)
-    return lambda x, z: field(system, depth, [load], x, z)[0]
+    loads = loads_of(modes, equivalent=WEIGHTS[: modes.wavenumbers.size], depth=depth, face=load)
+    return lambda x, z: field(loads, x, z)[0]
 
 
 def along(field: Field, axis: int) -> FloatArray:
@@ -145,18 +147,15 @@ def test_normal_stress_of_v_on_top(name: str) -> None:
     modes = MODES[name]
     depth = np.array([0.4, 1.7])
     kappa = np.sqrt(depth**2 + LATERAL**2)
-    system = system_of(modes)
     factor = np.real(modes.face_factor(kappa))
     core = coupling_core(modes.wavenumbers, depth, LATERAL, POISSON)
     computed = modes.load_on_top(core, depth, LATERAL, POISSON)
     for index in range(2):
         unit_load, wavenumber = np.ones((1, 1), np.complex128), depth[index : index + 1] + 0j
+        stress = evaluate_beside_end(modes, end_field._stress_of_face_load, wavenumber, unit_load)
 
-        def load(
-            x: FloatArray, wavenumber: ComplexArray = wavenumber, unit_load: ComplexArray = unit_load
-        ) -> FloatArray:
-            stresses = end_field._stress_of_face_load(system, wavenumber, [unit_load], x, np.zeros(1))
-            return np.asarray(stresses[0, 2, :, 0, 0])
+        def load(x: FloatArray, stress: Field = stress) -> FloatArray:
+            return np.asarray(stress(x, np.zeros(1))[2, :, 0, 0])
 
         expected = weigh(modes, load) * kappa[index] / factor[index]
         assert computed[: modes.discrete.size, index] == pytest.approx(expected[: modes.discrete.size])
