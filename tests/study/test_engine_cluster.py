@@ -28,13 +28,6 @@ def load_dataset(folder):
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.fixture(scope="module")
-def two_workers(tmp_path_factory):
-    """Address of a cluster with two workers, which several tests use."""
-    with cluster(tmp_path_factory.mktemp("cluster")) as address:
-        yield address
-
-
 def test_documentation_contains_cluster_commands():
     text = (ROOT / "docs" / "how-to" / "cluster.md").read_text()
     assert SCHEDULER in text
@@ -57,34 +50,6 @@ def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
         with pytest.raises(StudyFileError, match="no dask scheduler"):
             run_study(small_study(), tmp_path, scheduler=address, solver=solve_fake)
-
-
-@pytest.mark.system
-def test_cluster_of_separate_processes(two_workers, tmp_path):
-    """By the scheduler's address, and by a client, which the run leaves open and gives bytes instead of cases."""
-    from distributed import Client
-
-    study = small_study("large", sweep=LARGE)
-    run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
-    with Client(str(two_workers)) as client, mock.patch.object(client, "submit", wraps=client.submit) as submit:
-        for scheduler in (two_workers, client):
-            folder = tmp_path / type(scheduler).__name__
-            assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
-            assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
-        assert client.status == "running"
-    # The scheduler's memory would contain objects for every case of a task.
-    assert {type(argument) for call in submit.call_args_list for argument in call.args[1:]} == {bytes}
-
-
-@pytest.mark.system
-def test_dead_cluster_worker_fails_one_case(tmp_path):
-    study = small_study(
-        sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
-    )
-    with cluster(tmp_path) as address:
-        report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
-    assert report.counts == {"ok": 3, "failed": 1}
-    assert all(reason.startswith("WorkerDied") for _, reason in report.failures)
 
 
 @pytest.mark.parametrize("scheduler", [3, ["tcp://127.0.0.1:1"]])
@@ -137,19 +102,6 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 
 
 @pytest.mark.system
-def test_results_do_not_depend_on_workers(two_workers, tmp_path):
-    """Bit for bit: in this process, with two workers, and on a cluster."""
-    study = small_study(base=BASE | SHORT, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
-    for workers in (0, 2):
-        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
-    run_study(study, tmp_path / "cluster", scheduler=two_workers)
-    first_dataset = load_dataset(tmp_path / "0")
-    assert float(first_dataset["von_mises"].max()) > 1e8
-    for name in ("2", "cluster"):
-        assert load_dataset(tmp_path / name).identical(first_dataset), name
-
-
-@pytest.mark.system
 def test_single_solution_equals_study_result(tmp_path):
     """The former cases of a worker do not change a bit of the next one."""
     run_study(small_study(base=BASE | SHORT), tmp_path / "all", workers=0)
@@ -160,3 +112,51 @@ def test_single_solution_equals_study_result(tmp_path):
         for name in ("all", "alone")
     ]
     assert studies[0].equals(studies[1])
+
+
+@pytest.fixture(scope="module")
+def two_workers(tmp_path_factory):
+    """Address of a cluster with two workers, which several tests use."""
+    with cluster(tmp_path_factory.mktemp("cluster")) as address:
+        yield address
+
+
+@pytest.mark.system
+def test_cluster_of_separate_processes(two_workers, tmp_path):
+    """By the scheduler's address, and by a client, which the run leaves open and gives bytes instead of cases."""
+    from distributed import Client
+
+    study = small_study("large", sweep=LARGE)
+    run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
+    with Client(str(two_workers)) as client, mock.patch.object(client, "submit", wraps=client.submit) as submit:
+        for scheduler in (two_workers, client):
+            folder = tmp_path / type(scheduler).__name__
+            assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
+            assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
+        assert client.status == "running"
+    # The scheduler's memory would contain objects for every case of a task.
+    assert {type(argument) for call in submit.call_args_list for argument in call.args[1:]} == {bytes}
+
+
+@pytest.mark.system
+def test_dead_cluster_worker_fails_one_case(two_workers, tmp_path):
+    """The cluster replaces the worker: the tests below use it again."""
+    study = small_study(
+        sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
+    )
+    report = run_study(study, tmp_path / "out", scheduler=two_workers, solver=solve_fake)
+    assert report.counts == {"ok": 3, "failed": 1}
+    assert all(reason.startswith("WorkerDied") for _, reason in report.failures)
+
+
+@pytest.mark.system
+def test_results_do_not_depend_on_workers(two_workers, tmp_path):
+    """Bit for bit: in this process, with two workers, and on a cluster."""
+    study = small_study(base=BASE | SHORT, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
+    for workers in (0, 2):
+        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
+    run_study(study, tmp_path / "cluster", scheduler=two_workers)
+    first_dataset = load_dataset(tmp_path / "0")
+    assert float(first_dataset["von_mises"].max()) > 1e8
+    for name in ("2", "cluster"):
+        assert load_dataset(tmp_path / name).identical(first_dataset), name
