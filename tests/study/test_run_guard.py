@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -22,7 +23,7 @@ def test_unguarded_script_error_contains_remedy(tmp_path: Path) -> None:
     script.write_text(SCRIPT.format(folder=str(tmp_path / "results")))
     root = Path(__file__).parents[2]
     process = subprocess.run(
-        [sys.executable, script], cwd=root, env={"PYTHONPATH": str(root), "PATH": ""}, capture_output=True, text=True
+        [sys.executable, script], cwd=root, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True, text=True
     )
     assert process.returncode == 1
     last = process.stderr.strip().splitlines()[-1]
