@@ -10,17 +10,17 @@ import signal
 import time
 import uuid
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from contactstudy import analysis
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
 from contactstudy.errors import WindowError
-from contactstudy.stress import von_mises
+from contactstudy.stress import von_mises_of
 from contactstudy.study import worker
 from contactstudy.study.settings import RunSettings
 
@@ -54,20 +54,17 @@ def solve_fake(
     in_contact = (grid.x > start) & (grid.x < stop)
     profile = np.sqrt(np.clip(1 - (grid.y / half_width) ** 2, 0, None))
     pressure = peak * np.outer(in_contact * (1 + 0.1 * np.cos(grid.x / half_width)), profile)
-    cells = {"x": grid.x, "y": grid.y}
-    result = xr.Dataset(
-        {
-            "pressure": (("x", "y"), pressure),
-            "gap": (("x", "y"), np.where(pressure > 0, 0.0, 1e-6)),
-            "hertz_half_width": half_width,
-            "hertz_max_pressure": peak,
-            "normal_load": case.normal_load,
-            "iterations": 7,
-            "converged": True,
-            "end_traction_residual": 1e-5,
-        },
-        coords=cells,
-    )
+    variables: dict[str, Any] = {
+        "pressure": (("x", "y"), pressure),
+        "gap": (("x", "y"), np.where(pressure > 0, 0.0, 1e-6)),
+        "hertz_half_width": half_width,
+        "hertz_max_pressure": peak,
+        "normal_load": case.normal_load,
+        "iterations": 7,
+        "converged": True,
+        "end_traction_residual": 1e-5,
+    }
+    coordinates: dict[str, Any] = {"x": grid.x, "y": grid.y}
     if stresses:
         points = {
             "x_field": grid.x if x is None else x,
@@ -79,13 +76,17 @@ def solve_fake(
         # The maximum lies in the middle of the points, not at their border.
         x, y = (np.linspace(-1, 1, size) if size > 1 else np.zeros(1) for size in shape[:2])
         hill = (1 - 0.1 * x[:, None, None] ** 2) * (1 - 0.1 * y[:, None] ** 2)
-        for index, name in enumerate(STRESSES):
-            result[name] = (tuple(points), -peak * hill * np.exp(-depth) / (1 + index))
-        result = result.assign_coords(points)
-        result["von_mises"] = von_mises(result)
-        max_stress = analysis.largest_sample(result, "von_mises")
-        result = result.assign(max_stress.data_vars).assign(peak_von_mises_error=0.01 * max_stress["peak_von_mises"])
-    return describe(result, "made up for tests")
+        stress = [-peak * hill * np.exp(-depth) / (1 + index) for index in range(len(STRESSES))]
+        fields = dict(zip((*STRESSES, "von_mises"), [*stress, von_mises_of(*stress)], strict=True))
+        largest = np.unravel_index(fields["von_mises"].argmax(), shape)
+        variables |= {name: (tuple(points), values) for name, values in fields.items()}
+        variables["peak_von_mises"] = fields["von_mises"][largest]
+        for axis, positions, index in zip("xyz", points.values(), largest, strict=True):
+            variables[f"peak_von_mises_{axis}"] = positions[index]
+        variables["peak_von_mises_error"] = 0.01 * variables["peak_von_mises"]
+        coordinates |= points
+    # One call: every change of a Dataset copies all of its variables.
+    return describe(xr.Dataset(variables, coordinates), "made up for tests")
 
 
 HELD = "CONTACTSTUDY_TEST_HELD"
