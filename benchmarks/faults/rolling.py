@@ -73,7 +73,7 @@ def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) ->
         process = begin(folder, workers)
         end = time.monotonic() + SECONDS
         while done(folder) < kill_at and process.poll() is None and time.monotonic() < end:
-            time.sleep(0.01)
+            time.sleep(0.02)
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
         assert kill_at <= done(folder) < study.size, "the run ended before it was killed"

@@ -81,7 +81,7 @@ def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
 @pytest.mark.system
 def test_concurrent_run_is_refused(large, tmp_path):
     folder = tmp_path / "out"
-    first_process = start_run(large, folder, "--workers", "1", tickets=1)
+    first_process = start_run(large, folder, "--workers", "0", tickets=1)
     wait_for(first_process, lambda: count_finished(folder) == 1)
     second_process = start_run(large, folder, "--workers", "0", tickets=0)
     _, errors = second_process.communicate(timeout=SECONDS)
