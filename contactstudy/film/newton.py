@@ -14,7 +14,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy.checks import BoolArray, FloatArray, SingleArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.film.reynolds import FilmCells, Fluid, Law
+from contactstudy.film.reynolds import FilmCells, Fluid, Law, scale_columns, scale_rows
 
 LOGGER = logging.getLogger(__name__)
 
@@ -194,9 +194,10 @@ class _Iteration:
 
     def compute_mass(self, state: FilmState) -> FloatArray:
         """Mass of the film in each cell per area."""
-        linearised = self.linearise(state, np.inf, None)
-        density = self.problem.fluid.density(linearised.fluid_pressure.ravel()).value
-        return np.asarray(density * linearised.film.ravel())
+        problem, pressure = self.problem, state.pressure
+        fluid_pressure = pressure if problem.asperities is None else pressure - problem.asperities(state.distance).value
+        film = problem.compute_film(state.distance).value
+        return np.asarray((problem.fluid.density(fluid_pressure).value * film).ravel())
 
     def linearise(self, state: FilmState, step: float, mass: FloatArray | None) -> _LinearisedEquations:
         """Return residual and derivatives at a state."""
@@ -215,14 +216,14 @@ class _Iteration:
             by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
         # The fluid pressure is the total pressure minus the pressure of the asperities.
         if problem.asperities is not None:
-            by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
+            by_distance = by_distance - scale_columns(by_pressure, asperities.slope.ravel())
         elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
         diagonal = np.abs(by_pressure.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / diagonal <= 0
         # The residual is divided by the film of the cell: a norm of pressures would neglect the far inlet.
-        full_cells = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
-        by_pressure = full_cells @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
-        by_distance = full_cells @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
+        row_factors = np.where(cavitated, 0.0, 1 / film.value.ravel())
+        by_pressure = scale_rows(row_factors, by_pressure) + sparse.diags_array(cavitated.astype(np.float64))
+        by_distance = scale_rows(row_factors, by_distance) - sparse.diags_array(cavitated * asperities.slope.ravel())
         # The moment about the load's position is zero.
         prescribed = np.array([problem.load, 0.0][: len(problem.motions)])
         resultant_errors = problem.resultants @ state.pressure.ravel() - prescribed

@@ -65,6 +65,20 @@ class Flow(NamedTuple):
     by_film: sparse.csr_array  # derivatives at a fixed pressure
 
 
+def scale_rows(factors: FloatArray, matrix: sparse.csr_array) -> sparse.csr_array:
+    """Product of a diagonal and a matrix, several times as fast as the product of two sparse matrices."""
+    scaled = matrix.copy()
+    scaled.data *= np.repeat(factors, np.diff(matrix.indptr))
+    return scaled
+
+
+def scale_columns(matrix: sparse.csr_array, factors: FloatArray) -> sparse.csr_array:
+    """Product of a matrix and a diagonal."""
+    scaled = matrix.copy()
+    scaled.data *= factors[matrix.indices]
+    return scaled
+
+
 def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]) -> FloatArray:
     """Edges from `start` to `stop` of cells about as wide as `cell_width` at their midpoint.
 
@@ -155,8 +169,7 @@ class FilmCells:
         upstream = self.faces_y.upstream
         face_film, (min_film, max_film) = self.parabolas @ height, np.multiply.outer(FACE_RANGE, upstream @ height)
         bounds = np.select([face_film < min_film, face_film > max_film], FACE_RANGE)
-        unbounded = sparse.diags_array(np.where(bounds > 0, 0.0, 1.0))
-        return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ upstream)
+        return scale_rows(np.where(bounds > 0, 0.0, 1.0), self.parabolas) + scale_rows(bounds, upstream)
 
     def face_flows(self, fluid: Fluid, pressure: FloatArray, film: FloatArray) -> tuple[Flow, Flow]:
         """Flows through the faces along y and along x, from fluid pressure and mean height (x, y)."""
@@ -165,8 +178,8 @@ class FilmCells:
         upwind = self.upwind(height)
         entrained = Flow(
             upwind @ (density.value * height),
-            upwind @ sparse.diags_array(density.slope * height),
-            upwind @ sparse.diags_array(density.value),
+            scale_columns(upwind, density.slope * height),
+            scale_columns(upwind, density.value),
         )
         driven_y, driven_x = (
             faces.conduct_flow(fluid.flow_number, reduced, height) for faces in (self.faces_y, self.faces_x)
@@ -189,7 +202,7 @@ class FilmCells:
             self.faces_y.outflow @ flow_y + self.faces_x.outflow @ flow_x
             for flow_y, flow_x in zip(*self.face_flows(fluid, pressure, film.value), strict=True)
         )
-        return Flow(outflow, by_pressure, by_film @ sparse.diags_array(film.slope.ravel()))
+        return Flow(outflow, by_pressure, scale_columns(by_film, film.slope.ravel()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,9 +220,9 @@ class Faces:
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = -2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value
-        by_pressure = sparse.diags_array(factor) @ self.gradient @ sparse.diags_array(reduced.slope)
+        by_pressure = scale_columns(scale_rows(factor, self.gradient), reduced.slope)
         by_before, by_after = (
-            sparse.diags_array(factor * slopes * (2 / film - 1 / (upstream + downstream))) @ selection
+            scale_rows(factor * slopes * (2 / film - 1 / (upstream + downstream)), selection)
             for film, selection in ((upstream, self.upstream), (downstream, self.downstream))
         )
         return Flow(factor * slopes, by_pressure, by_before + by_after)
