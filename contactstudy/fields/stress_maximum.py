@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
-from scipy import ndimage
+import scipy  # imports ndimage, which is slow to import, on first use
 
 from contactstudy.arrays.grid import TOP_ERROR, Grid, Points
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
@@ -125,7 +125,7 @@ def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None =
     extent, pressure = body.extent, loads[Load.NORMAL].values
     column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.
-    inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
+    inside_rim = np.asarray(scipy.ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
     border = Border(loads, (body.material, roller), inside_rim)
     if not column_maxima.any():
         return Search(grid, extent, inside_rim, border, samples=[], peak_width=np.inf)
