@@ -34,7 +34,7 @@ class Task:
     radius: float = 5e-3
     speed: float = 2.0
     pressures: tuple[float, ...] = (0.8e9, 1.2e9, 1.6e9)
-    crowns: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0, 1.5, 2.5)
+    crowns: tuple[float, ...] = (0.25, 0.5, 1.0, 1.5, 2.5, 5.0, 8.0, 12.0, 20.0)
     """Drops over those of Lundberg's profile for each pressure."""
     accuracy: float = 0.1
 
@@ -91,15 +91,16 @@ def choose(films: xr.Dataset) -> xr.Dataset:
     """Crowns with the thickest least film and with the lowest peak pressure, and the film that the latter loses."""
     thickest = films["least_film"].fillna(0.0).idxmax("crown")
     lowest = films["peak_pressure"].idxmin("crown")
-    least_film = films["least_film"].sel(crown=lowest).drop_vars("crown")
-    best = films.sel(crown=thickest).drop_vars("crown")
+    best, lowest_case = (films.sel(crown=crown).drop_vars("crown") for crown in (thickest, lowest))
+    film_share = lowest_case["least_film"] / best["least_film"]
     return xr.Dataset(
         {
             "crown_film": thickest,
             "crown_pressure": lowest,
-            "film_loss": 1 - least_film / best["least_film"],
-            "film_loss_error": 2 * best["least_film_error"] / best["least_film"],
-            "pressure_gain": best["peak_pressure"] / films["peak_pressure"].min("crown") - 1,
+            "film_loss": 1 - film_share,
+            "film_loss_error": (lowest_case["least_film_error"] + film_share * best["least_film_error"])
+            / best["least_film"],
+            "pressure_gain": best["peak_pressure"] / lowest_case["peak_pressure"] - 1,
         }
     )
 
@@ -121,7 +122,7 @@ def table(films: xr.Dataset) -> str:
                 f"| {1e-9 * pressure:g} | {model} | {ratio:.3f} ± {float(design['end_film_ratio_error']):.3f} "
                 f"| {float(design['slice_ratio']):.2f} | {FULL_FILM / ratio:.1f} "
                 f"| {float(best['crown_film']):g}, {float(best['crown_pressure']):g} "
-                f"| {100 * float(best['film_loss']):.0f} ± {100 * float(best['film_loss_error']):.0f} % "
+                f"| {100 * float(best['film_loss']):.1f} ± {100 * float(best['film_loss_error']):.1f} % "
                 f"| {100 * float(best['pressure_gain']):.1f} % |"
             )
     return "\n".join(lines)
@@ -138,6 +139,7 @@ def draw(films: xr.Dataset) -> Figure:
     axes[0].set_ylabel("least film over that of the middle")
     axes[1].set_ylabel("dry peak pressure over $p_0$")
     for ax in axes:
+        ax.set_xscale("log")
         ax.set_xlabel(f"drop over Lundberg's, $p_0$ = {1e-9 * pressure:g} GPa")
         ax.grid(color="0.9", linewidth=0.6)
     axes[0].legend(frameon=False, fontsize="small")

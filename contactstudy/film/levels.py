@@ -413,7 +413,13 @@ def film_on_level(
     )
     if start is None:
         contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
-        dry = solve_normal(operator, contact)
+        # Cells enter the contact together but leave it one by one: interpolation would load cells outside.
+        refined = film.dry_contact
+        nearest = (
+            np.abs(positions[:, None] - centres).argmin(axis=1)
+            for positions, centres in ((grid.x, refined.shape.grid.x), (grid.y, refined.shape.grid.y))
+        )
+        dry = solve_normal(operator, contact, refined.pressure[np.ix_(*nearest)])
         opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
         # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
         separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))

@@ -122,12 +122,12 @@ def solve_film(
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
     try:
         with one_blas_thread():
-            refined = _refine(film, limit, settings, start)
-            level_film = continue_solution(film, refined.level_film, settings)
+            level_film, direction_errors, solutions = _refine(film, limit, settings, start)
+            level_film = continue_solution(film, level_film, settings)
     except StepFailedError as error:
         raise _create_film_error(error, film.half_width) from None
-    solutions = [*refined.solutions, level_film.solution]
-    refined = _RefinedFilm(level_film, compute_films(film, level_film), refined.direction_errors, solutions)
+    films, solutions = compute_films(film, level_film), [*solutions, level_film.solution]
+    refined = _RefinedFilm(level_film, films, direction_errors, solutions)
     result = _label_film(film, refined)
     seconds = time.perf_counter() - start_time
     relative_error = max(refined.errors.values()) / refined.films.central_film
@@ -216,10 +216,14 @@ class _RefinedFilm(NamedTuple):
         return dict(zip(FILM_NAMES, errors.tolist(), strict=True))
 
 
-def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
+# Film on the finest level, relative errors of the films by the direction of refinement, solutions of all levels
+_Levels = tuple[FilmOnCells, dict[str, FloatArray], list[FilmSolution]]
+
+
+def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Levels:
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
-    if start is not None and (refined := _continue_film(film, accuracy, settings, start)) is not None:
-        return refined
+    if start is not None and (levels := _continue_film(film, accuracy, settings, start)) is not None:
+        return levels
     level = film.coarsest_level
     level_film: FilmOnCells | None = None
     solutions: list[FilmSolution] = []
@@ -250,7 +254,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             break
         direction = max(directions, key=lambda name: float((direction_errors[name] * films[-1].thicknesses).max()))
         level = level.refined(direction, film, level_film.problem.cells.x, (films[-1].first_x, films[-1].last_x))
-    return _RefinedFilm(level_film, films[-1], direction_errors, solutions)
+    return level_film, direction_errors, solutions
 
 
 def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:
@@ -258,7 +262,7 @@ def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatA
     return np.asarray((np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR) * thicknesses)
 
 
-def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
+def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _Levels | None:
     """Film on cells at most one refinement finer than those of a similar film; None if they do not suffice."""
     recorded = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
     try:
@@ -288,7 +292,7 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
         level_film = film_on_level(film, level, settings, start)
     except StepFailedError:
         return None
-    return _RefinedFilm(level_film, compute_films(film, level_film), direction_errors, [level_film.solution])
+    return level_film, direction_errors, [level_film.solution]
 
 
 def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:

@@ -58,18 +58,20 @@ class LateralPanel:
 
     def waves(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
+        return self.wave(y, 1), self.wave(y, -1)
+
+    def wave(self, y: FloatArray, sign_y: int) -> FloatArray:
+        """``cos(k y)``, even in y, or ``sin(k y)``, odd, times the weights of the integral: array (fine, y)."""
         if self.reference is not None:
             panel_end, terms = float(self.nodes[-1]), self.nodes.size - self.poles
             # Wavenumbers are divided by the panel's end, so that their powers are of similar size.
             powers = (self.nodes[:, None] / panel_end) ** np.arange(-self.poles, terms)
             scale = panel_end ** np.arange(-self.poles, terms)
-            waves = []
-            for compute_moments in (cosine_moments, sine_moments):
-                integrals = compute_moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
-                waves.append(np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi))
-            return waves[0], waves[1]
-        phase, weights = np.outer(self.fine_nodes, y), self.weights[:, None] / np.pi
-        return np.cos(phase) * weights, np.sin(phase) * weights
+            compute_moments = cosine_moments if sign_y > 0 else sine_moments
+            integrals = compute_moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
+            return np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi)
+        compute_wave = np.cos if sign_y > 0 else np.sin
+        return np.asarray(compute_wave(np.outer(self.fine_nodes, y)) * (self.weights[:, None] / np.pi))
 
     def load_waves(self, grid: Grid) -> tuple[FloatArray, FloatArray]:
         """Integrals of ``cos(k y)`` and ``sin(k y)`` over the cells along y: arrays (cell, fine)."""

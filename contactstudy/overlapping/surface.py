@@ -180,7 +180,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
     # Matrices from samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
-    transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
+    transforms = {1: np.ascontiguousarray(even_matrix.T), -1: np.ascontiguousarray(-odd_matrix.T)}
     samples_by_response: dict[Response, list[FloatArray]] = {}
     for poles in sorted({_poles(response) for response in request.responses}):
         first_wavenumber = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
@@ -193,24 +193,17 @@ def end_kernel(request: EndRequest) -> EndKernel:
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
         for panel in panels:
             cell_factor = request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))
-            even_transform, odd_transform = (
-                transform @ (waves.T * cell_factor)
-                for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
-            )
-            if panel.interpolation is not None:
-                even_transform = even_transform @ panel.interpolation
-                odd_transform = odd_transform @ panel.interpolation
+            panel_transforms = {}
+            for sign_y in {response.sign_y for response in responses}:
+                transform = transforms[sign_y] @ (panel.wave(offsets, sign_y).T * cell_factor)
+                panel_transforms[sign_y] = transform if panel.interpolation is None else transform @ panel.interpolation
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
             for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest)):
                 count = sampled.shape[-1]
                 samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
                 for sums, parity_samples in zip(total, response_samples, strict=True):
-                    add_product(
-                        sums,
-                        even_transform if response.sign_y > 0 else odd_transform,
-                        parity_samples.reshape(-1, size**2),
-                    )
+                    add_product(sums, panel_transforms[response.sign_y], parity_samples.reshape(-1, size**2))
         shape = (request.cells_y + 1, size, size)
         for response, total in zip(responses, totals, strict=True):
             samples_by_response[response] = [sums.reshape(shape) for sums in total]
