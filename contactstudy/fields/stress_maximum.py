@@ -35,8 +35,8 @@ LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over 
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
 MIN_SECOND_PEAK = 0.6  # Least peak of a searched half over the largest: a lower one may stress a free end more
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
-BORDER_ERROR = 0.4  # error at a border of stick and slip, over (rise of the pressure)**2 / pressure. Accuracy.
-RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
+BORDER_SHIFT = 0.15  # error of the position of a border of stick and slip, cells: that of Carter's. Accuracy.
+RIM_CELLS = 1  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
 class Border:
@@ -49,13 +49,13 @@ class Border:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
-        rise = np.zeros_like(pressure)
+        rise, border_error = np.zeros_like(pressure), np.zeros_like(pressure)
         ratio = traction / np.where(pressure > 0, pressure, 1.0)
         ratio_size = np.hypot(*ratio)
         bound = ratio_size.max(axis=1, keepdims=True)
         deficit = 1 - ratio_size / np.where(bound > 0, bound, 1.0)
         is_sticking = (pressure > 0) & (deficit > SLIP_TOLERANCE) & (bound > 0)
-        missed = np.zeros(pressure.shape, bool)
+        missed, represents = np.zeros((2, *pressure.shape), bool)
         for step in (1, -1):
             is_slipping = np.roll((pressure > 0) & ~is_sticking, step, axis=1)
             is_border = is_sticking & is_slipping
@@ -63,23 +63,33 @@ class Border:
             missed |= is_border & ~has_cell
             column, first_row = np.nonzero(has_cell)
             second_row, slipping_row = first_row + step, first_row - step
-            squares = deficit[column, first_row] ** 2, deficit[column, second_row] ** 2
-            distance = np.clip(squares[0] / np.maximum(squares[1] - squares[0], 1e-300), 0.0, 1.0)
-            border_pressure = (1 - distance) * pressure[column, first_row] + distance * pressure[column, slipping_row]
+            # The integrals of this root up to both cells' far faces place the border relative to the first centre.
+            sums = deficit[column, first_row], deficit[column, first_row] + deficit[column, second_row]
+            fraction = (sums[0] / sums[1]) ** (2 / 3)
+            distance = np.clip(fraction / (1 - fraction) - 0.5, -BORDER_SHIFT, 1.0)
+            # Near the rim the squared pressure is linear.
+            next_row = np.where(distance > 0, slipping_row, second_row)
+            first_pressure, next_pressure = pressure[column, first_row], pressure[column, next_row]
+            slope = next_pressure**2 - first_pressure**2
+            border_pressure = np.sqrt(first_pressure**2 + abs(distance) * slope)
             traction[:, column, second_row] = border_pressure * ratio[:, column, slipping_row]
+            represents[column, second_row] = True
             rise[column, second_row] = border_pressure - pressure[column, second_row]
+            border_error[column, second_row] = BORDER_SHIFT * abs(next_pressure - first_pressure)
         # Without a representing cell the cusp is missed. At the distance d from a narrow stick zone at the leading edge
         # of Carter's contact, here half a cell, the stress is lower by ``f p sqrt(2 d / a)``.
         cells = np.maximum(np.count_nonzero(pressure, axis=1), 1)
         missed_error = (missed * bound * pressure).max(axis=1) * np.sqrt(2 / cells)
-        self.error = (
-            BORDER_ERROR * rise**2 / np.where(rise != 0, pressure, 1.0) + missed_error[:, None]
-        )  # (x, y): error of the stress on the top, Pa
         self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
+        self.represents = represents  # (x, y): whether the cell represents a border
         self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
         # In cells that stick the relative strain along y is constant, and the tractions' stress is 2 beta p.
         along_y, poisson = 1 - 2 * dundurs_parameter(*materials), materials[0].poisson
         self.pressure_stresses = np.array([poisson * (1 + along_y), along_y, 1.0])  # -xx, -yy, -zz over the pressure
+        # A change of the pressure changes the von Mises stress at most by that of the changed stresses.
+        xx, yy, zz = self.pressure_stresses
+        factor = von_mises_of(xx, yy, zz, np.zeros_like(bound), bound, np.zeros_like(bound))
+        self.error = factor * border_error + missed_error[:, None]  # (x, y): error of the stress on the top, Pa
 
 
 class Search(NamedTuple):
@@ -114,9 +124,8 @@ class Search(NamedTuple):
         columns, rows = np.ix_(*self.cells(points))
         corrected_stresses, rise = stresses.copy(), self.border.rise[columns, rows, None]
         corrected_stresses[:3] -= self.border.pressure_stresses[:, None, None, None] * rise
-        corrected_stresses[4:] = np.where(
-            rise != 0, -self.border.traction[:, columns, rows, None], corrected_stresses[4:]
-        )
+        represents, traction = self.border.represents[columns, rows, None], self.border.traction[:, columns, rows, None]
+        corrected_stresses[4:] = np.where(represents, -traction, corrected_stresses[4:])
         return corrected_stresses
 
 
@@ -151,7 +160,7 @@ def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None =
         inner_rows = np.flatnonzero(inside_rim[columns].any(axis=0))
         candidates = inner_rows if inner_rows.size else np.arange(grid.cells_y)
         nearest_rows = candidates[np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1)]
-        rows = np.union1d(nearest_rows, np.flatnonzero(border.rise[column]))
+        rows = np.union1d(nearest_rows, np.flatnonzero(border.represents[column]))
         centres = grid.x[columns]
         return Points(centres[select_separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
 
@@ -299,10 +308,10 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
     values, inside_rim = von_mises_of(*stresses)[..., 0], search.inside_rim_at(centres)
     column, row, _ = sample.indices
     cell = columns[column], rows[row]
-    error = TOP_ERROR * sample.maximum.value + float(search.border.error[cell])
+    error = float(np.hypot(TOP_ERROR * sample.maximum.value, search.border.error[cell]))
     for line, is_inside, index in (
         (values[:, row], inside_rim[:, row], column),
-        (values[column], inside_rim[column] | bool(search.border.rise[cell]), row),
+        (values[column], inside_rim[column] | search.border.represents[cell], row),
     ):
         neighbours = slice(max(index - 1, 0), index + 2)
         if not is_inside[neighbours].all():

@@ -8,10 +8,11 @@ import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import sliding
+from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import contact_stresses
-from contactstudy.fields.stress_maximum import StressMaximum, place_search
+from contactstudy.fields.stress_maximum import Border, StressMaximum, place_search
+from contactstudy.kernels.load import Load
 from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
@@ -278,3 +279,21 @@ def test_disagreeing_polynomials_have_large_error() -> None:
     assert peak == pytest.approx(float(fine["von_mises"].max()), abs=error)
     assert error < 6e-3 * peak
     assert peak == pytest.approx(float(coarse["peak_von_mises"]), rel=6e-3)
+
+
+@pytest.mark.parametrize("position", [-0.1, 0.0, 0.3, 0.6, 0.9])
+@pytest.mark.parametrize("row", [12, 15])
+def test_border_of_square_root_is_exact(position: float, row: int) -> None:
+    """Cell means of Carter's square root place the border, also where both cells have the same pressure."""
+    centres = np.arange(32) - 15.5
+    pressure = np.sqrt(np.maximum(13.0**2 - centres**2, 0.0))
+    border = centres[row] - position  # the traction's deficit is the root of the distance from here
+    integral = np.maximum(np.arange(33) - 16 - border, 0.0) ** 1.5 / 24
+    integral[: row + 1] = 0.0  # the first sticking cell carries all up to its far face
+    ratio = 1.0 - np.diff(integral)
+    loads = {Load.NORMAL: TopLoad(pressure[None]), Load.ALONG_Y: TopLoad(0.3 * (pressure * ratio)[None])}
+    inside = np.ones((1, 32), bool)
+    result = Border(loads, (STEEL, STEEL), inside)
+    assert np.flatnonzero(result.represents).tolist() == [row + 1]
+    expected = np.sqrt(np.interp(border, centres, pressure**2))
+    assert result.traction[1, 0, row + 1] == pytest.approx(0.3 * expected, rel=1e-9)
