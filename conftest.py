@@ -23,8 +23,7 @@ for name in ("COMM__TIMEOUTS__CONNECT", "COMM__TIMEOUTS__TCP", "DEPLOY__LOST_WOR
 # dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which is not safe between threads.
 os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 
-# Times depend on the machine, so no example has a deadline. CI must not depend on chance: its examples are constant, and
-# three times as many.
+# Times depend on the machine, so no example has a deadline. CI must not depend on chance: its examples are constant.
 settings.register_profile("local", max_examples=20, deadline=None)
 settings.register_profile("CI", max_examples=60, deadline=None, derandomize=True)
 settings.load_profile("CI" if os.environ.get("CI") else "local")
