@@ -45,9 +45,7 @@ def fold_offsets(offsets: FloatArray, step: float) -> tuple[FloatArray, IntArray
     return 0.5 * step * distances, indices, np.where(half_steps < 0, -1.0, 1.0)
 
 
-MAX_DIRECT_POINTS = (
-    8  # largest number of points along y with direct sums over the corners instead of a convolution. Speed.
-)
+MAX_DIRECT_POINTS = 8  # largest number of points along y with direct sums instead of a convolution. Speed.
 BLOCK_SIZE = 16_384  # corners and depths per evaluation. Speed: the values fit into the processor's cache.
 MERGED_WIDTH = 0.04  # width of merged columns over their distance. Accuracy: 1e-5 of the pressure.
 
@@ -79,7 +77,7 @@ class Layer:
         self.z = z
         # Distances at which corner functions are evaluated, and the distance and the sign of each offset.
         self.distances, self._indices, self._signs = fold_offsets(offsets, offsets[1] - offsets[0])
-        self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
+        self._folding_matrices: dict[int, FloatArray] = {}
         self.edges = edges  # edges along y of fine cells; None for the grid's cells
         self.fine_per_cell = fine_per_cell  # fine cells per cell of the layer; the cell carries their moments
 
@@ -106,16 +104,16 @@ class Layer:
             ]
         return unfolded_values
 
-    def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
-        """Sum jumps (edge, corner) from offset `start` on over both sides of 0: array (edge and distance, parity)."""
-        count = jumps.shape[1]
-        if (start, count) not in self._folding_matrices:
-            window, corners = slice(start, start + count), np.arange(count)
-            matrix = np.zeros((count, self.distances.size, 2))
-            matrix[corners, self._indices[window], 0] = 1.0
-            matrix[corners, self._indices[window], 1] = self._signs[window]
-            self._folding_matrices[start, count] = matrix.reshape(count, -1)
-        return (jumps @ self._folding_matrices[start, count]).reshape(-1, 2)
+    def fold_jumps(self, jumps: FloatArray) -> FloatArray:
+        """Sum jumps (edge, corner) over both sides of 0: array (edge and distance, point and parity)."""
+        count, starts = jumps.shape[1], self.offset_indices
+        if count not in self._folding_matrices:
+            corners, matrix = np.arange(count), np.zeros((count, self.distances.size, starts.size, 2))
+            for point, start in enumerate(starts.tolist()):
+                matrix[corners, self._indices[start : start + count], point, 0] = 1.0
+                matrix[corners, self._indices[start : start + count], point, 1] = self._signs[start : start + count]
+            self._folding_matrices[count] = matrix.reshape(count, -1)
+        return (jumps @ self._folding_matrices[count]).reshape(-1, 2 * starts.size)
 
 
 def midpoint_cells(aligned: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
@@ -139,9 +137,7 @@ class Jumps:
         self.size = fft.next_fast_len(jumps.shape[1] + int(starts.max()), real=True)
         self.is_folded = starts.size <= MAX_DIRECT_POINTS
         if self.is_folded:
-            # Folded onto the distinct distances of the corner functions: (edge and distance, point and parity).
-            folded_values = [layer.fold_jumps(values, start) for start in starts.tolist()]
-            self.weights: FloatArray | ComplexArray = np.stack(folded_values, axis=1).reshape(-1, 2 * starts.size)
+            self.weights: FloatArray | ComplexArray = layer.fold_jumps(values)
         else:  # (edge, wavenumber)
             self.weights = fft.rfft(values, self.size, axis=1).conj()
 
