@@ -70,3 +70,30 @@ def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_tracti
         "sigma_xx": traction_scale * 3 * poisson * ys,
         "tau_xy": traction_scale * (2 - poisson) * xs,
     }
+
+
+def elliptic_line_stresses(y: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Stresses (yy, zz, yz) under the pressure, and under the traction along +y, ``sqrt(1 - y**2)``.
+
+    K. L. Johnson, Contact Mechanics (1985), 4.49 and 7.8.
+    """
+    difference = 1 - y**2 + z**2
+    root = np.sqrt(difference**2 + 4 * y**2 * z**2)
+    m = np.sqrt(np.maximum(root + difference, 0) / 2)
+    n = np.sign(y) * np.sqrt(np.maximum(root - difference, 0) / 2)
+    squares = np.maximum(m**2 + n**2, 1e-300)
+    yy, zz = 2 * z - m * (1 + (z**2 + n**2) / squares), -m * (1 - (z**2 + n**2) / squares)
+    yz = -n * (m**2 - z**2) / squares
+    return np.array([yy, zz, yz]), np.array([n * (2 - (z**2 - m**2) / squares) - 2 * y, yz, yy])
+
+
+def largest_under_carter(friction: float, stick: float, poisson: float) -> float:
+    """Largest von Mises stress under Carter's traction over the largest pressure, in plane strain."""
+    y = np.append(np.linspace(-1.1, 1.1, 441), 1 - 2 * stick)
+    y, z = (axis.ravel() for axis in np.meshgrid(y, np.linspace(0.0, 1.0, 51)))
+    pressure, sliding = elliptic_line_stresses(y, z)
+    sticking = elliptic_line_stresses((y - 1 + stick) / stick, z / stick)[1]
+    yy, zz, yz = pressure + friction * (sliding - stick * sticking)
+    xx = poisson * (yy + zz)
+    squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * yz**2
+    return float(np.sqrt(squares.max()))

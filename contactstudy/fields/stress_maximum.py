@@ -87,9 +87,8 @@ class Border:
         along_y, poisson = 1 - 2 * dundurs_parameter(*materials), materials[0].poisson
         self.pressure_stresses = np.array([poisson * (1 + along_y), along_y, 1.0])  # -xx, -yy, -zz over the pressure
         # A change of the pressure changes the von Mises stress at most by that of the changed stresses.
-        xx, yy, zz = self.pressure_stresses
-        factor = von_mises_of(xx, yy, zz, np.zeros_like(bound), bound, np.zeros_like(bound))
-        self.error = factor * border_error + missed_error[:, None]  # (x, y): error of the stress on the top, Pa
+        change = von_mises_of(*[*self.pressure_stresses, 0 * bound, bound, 0 * bound])  # over that of the pressure
+        self.error = change * border_error + missed_error[:, None]  # (x, y): error of the stress on the top, Pa
 
 
 class Search(NamedTuple):

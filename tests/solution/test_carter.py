@@ -9,37 +9,13 @@ import pytest
 import xarray as xr
 
 import contactstudy as cs
+from benchmarks import rolling_stress
+from benchmarks.rolling_stress import LENGTH, RADIUS, STEEL, compare_with_carter, compare_with_finer_rows
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
-
-POISSON, RADIUS, LENGTH, PRESSURE = 0.28, 5e-3, 3e-3, 5e8
-STEEL = cs.Material(young=210e9, poisson=POISSON)
-
-
-def elliptic_line(y: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Stresses (yy, zz, yz) under the pressure, and under the traction along +y, ``sqrt(1 - y**2)``.
-
-    K. L. Johnson, Contact Mechanics (1985), 4.49 and 7.8.
-    """
-    difference = 1 - y**2 + z**2
-    root = np.sqrt(difference**2 + 4 * y**2 * z**2)
-    m = np.sqrt(np.maximum(root + difference, 0) / 2)
-    n = np.sign(y) * np.sqrt(np.maximum(root - difference, 0) / 2)
-    squares = np.maximum(m**2 + n**2, 1e-300)
-    yy, zz = 2 * z - m * (1 + (z**2 + n**2) / squares), -m * (1 - (z**2 + n**2) / squares)
-    yz = -n * (m**2 - z**2) / squares
-    return np.array([yy, zz, yz]), np.array([n * (2 - (z**2 - m**2) / squares) - 2 * y, yz, yy])
-
-
-def largest_under_carter(friction: float, stick: float) -> float:
-    """Largest von Mises stress over the largest pressure, in plane strain."""
-    y = np.append(np.linspace(-1.1, 1.1, 441), 1 - 2 * stick)
-    y, z = (axis.ravel() for axis in np.meshgrid(y, np.linspace(0.0, 1.0, 51)))
-    pressure, sliding = elliptic_line(y, z)
-    sticking = elliptic_line((y - 1 + stick) / stick, z / stick)[1]
-    yy, zz, yz = pressure + friction * (sliding - stick * sticking)
-    xx = POISSON * (yy + zz)
-    squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * yz**2
-    return float(np.sqrt(squares.max()))
+from contactstudy.fields.stress import stresses_at
+from contactstudy.fields.stress_maximum import StressMaximum, find_stress_maximum, place_search
+from contactstudy.solution import contact_on_cells
 
 
 @pytest.mark.parametrize(
@@ -62,21 +38,9 @@ def test_stress_maximum_at_border_near_rim(friction: float, force_fraction: floa
 
 def check_stress_maximum(friction: float, force_fraction: float, max_error: float) -> xr.Dataset:
     """Check the largest stress and its error, over the closed stress at most `max_error`; return the result."""
-    profile = cs.profiles.Lundberg.for_pressure(
-        PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
-    )
-    roller = cs.Roller(radius=RADIUS, length=LENGTH, profile=profile, material=STEEL, ends="none")
-    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=PRESSURE, friction=friction)
-    creepage = friction * case.hertz_half_width / RADIUS * (1 - force_fraction)
-    result = cs.solve(replace(case, motion=cs.Rolling(longitudinal_creepage=creepage)), y=[0.0], z=[0.0])
-    middle_column = result.isel(x=int(abs(result.x.values - LENGTH / 2).argmin()))
-    largest, step = float(result.peak_pressure), float(result.y[1] - result.y[0])
-    half_width = 2 * step * float(middle_column.pressure.sum()) / (np.pi * largest)
-    stick = 1 - creepage * RADIUS / (friction * half_width)
-    expected = largest * largest_under_carter(friction, stick)
-    assert abs(float(result.peak_von_mises) - expected) < float(result.peak_von_mises_error)
-    assert float(result.peak_von_mises_error) < max_error * expected
-    return result
+    comparison = compare_with_carter(friction, force_fraction)
+    assert abs(comparison.change) < comparison.error < max_error
+    return comparison.result
 
 
 def test_stress_maximum_at_border_below_rigid_roller() -> None:
@@ -85,12 +49,55 @@ def test_stress_maximum_at_border_below_rigid_roller() -> None:
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.4)
     creepage = 0.86 * 0.4 * case.hertz_half_width / RADIUS
     case = replace(case, motion=cs.Rolling(longitudinal_creepage=creepage))
-    result = cs.solve(case, accuracy=0.1, y=[0.0], z=[0.0])
-    edges = np.append(result.x_bounds.values[:, 0], result.x_bounds.values[-1, 1])
-    half_step = 0.5 * float(result.y[1] - result.y[0])
-    window = (float(result.y[0]) - half_step, float(result.y[-1]) + half_step)
-    reference = cs.solve(case, cs.Grid.between(edges, window, 4 * result.sizes["y"]), y=[0.0], z=[0.0])
-    assert float(result.peak_von_mises) == pytest.approx(float(reference.peak_von_mises), rel=0.01)
+    comparison = compare_with_finer_rows(case, accuracy=0.1)
+    assert comparison is not None
+    assert abs(comparison.change) < 0.01
+
+
+def test_stress_maximum_in_narrow_slip_strip() -> None:
+    """On 6 columns the border is at most two cells off the rim along x and y; the reference is on finer cells."""
+    profile = cs.profiles.Ellipsoid(crown_radius=1.5e-3)
+    roller = cs.Roller(radius=RADIUS, length=0.2e-3, profile=profile, material=STEEL, ends="none")
+    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=1.0)
+    half_width = case.hertz_half_width
+    creepages = {"longitudinal_creepage": -0.02, "lateral_creepage": 0.07}
+    motion = cs.Rolling(**{name: value * half_width / RADIUS for name, value in creepages.items()})
+    x_range = (0.1e-3 - 0.81 * half_width, 0.1e-3 + 0.81 * half_width)
+    y_range = (-1.66 * half_width, 1.66 * half_width)
+    coarse, fine = (
+        largest_stress(
+            replace(case, motion=motion),
+            cs.Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y),
+        )
+        for cells_x, cells_y in ((8, 32), (32, 96))
+    )
+    assert coarse.position[2] == 0.0
+    assert abs(coarse.value - fine.value) < coarse.error < 0.1 * fine.value
+
+
+def largest_stress(case: cs.Case, grid: cs.Grid) -> StressMaximum:
+    """Largest von Mises stress on given cells with its error, which results on given cells do not have."""
+    solution = contact_on_cells(case, grid, None, 1e-6)
+    loads, pressure = solution.tractions.loads, solution.contact.pressure
+
+    def stress_at(points: Points) -> FloatArray:
+        return stresses_at(case.body, loads, grid, [points], pressure)[0]
+
+    search = place_search(case.body, loads, grid, case.roller.material)
+    return find_stress_maximum(search, [stress_at(points) for points in search.samples], stress_at)
+
+
+def test_command_compares_with_carter(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(rolling_stress, "FRICTIONS", (0.3,))
+    monkeypatch.setattr(rolling_stress, "FORCE_FRACTIONS", (0.8,))
+    assert rolling_stress.main(["--carter"]) == 0
+    assert "1 cases, 1 stated errors hold" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_command_compares_random_case(capsys: pytest.CaptureFixture[str]) -> None:
+    assert rolling_stress.main(["--first", "6", "--cases", "1"]) == 0
+    assert "1 cases, 1 stated errors hold" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
