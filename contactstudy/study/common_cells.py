@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of
+from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of, interpolate_columns
 from contactstudy.checks import FloatArray
 
 MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases beside its edges. Accuracy
@@ -142,18 +142,12 @@ class Resampling:
         if self.has_points:
             order = np.argsort(self.source)
             positions, values = self.source[order], values[order]
-        if positions.size == 1:
-            result = np.repeat(values, self.axis.size, axis=0)
-        else:
-            cells = np.clip(np.searchsorted(positions, self.axis) - 1, 0, positions.size - 2)
-            fraction = np.clip((self.axis - positions[cells]) / (positions[cells + 1] - positions[cells]), 0.0, 1.0)
-            fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
-            with np.errstate(invalid="ignore"):
-                result = (1 - fraction) * values[cells] + fraction * values[cells + 1]
-            # Next to an infinite gap linear interpolation has no value.
-            containing = np.searchsorted(self.source, self.axis) - 1
-            nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
-            result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
+        with np.errstate(invalid="ignore"):
+            result = interpolate_columns(values, positions, self.axis)
+        # Next to an infinite gap linear interpolation has no value.
+        containing = np.searchsorted(self.source, self.axis) - 1
+        nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
+        result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
         result[self.is_outside] = np.nan
         return result
 

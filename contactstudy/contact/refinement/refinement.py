@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import centres_of
+from contactstudy.arrays.grid import centres_of, interpolate_columns
 from contactstudy.arrays.peaks import section_maxima
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.normal.problem import interpolate_columns
 from contactstudy.contact.refinement.laws import EndLaw, Sample, law_of
 
 FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
