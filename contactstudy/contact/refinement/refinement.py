@@ -364,8 +364,7 @@ class Refinement:
 
     def _half_pressure(self, side: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
-        pressure: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
-        return pressure
+        return np.asarray(self.pressure[first_half if side == 0 else ~first_half])
 
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
         """Columns of a threshold, with values and errors; the values join the history."""
