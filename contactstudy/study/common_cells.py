@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of, interpolate_columns
 from contactstudy.checks import FloatArray
+from contactstudy.profiles.measured_profile import minmod
 
 MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases beside its edges. Accuracy
 END_WIDTH = 1e-10  # Width of the cell on the end of a case over the longest case, above rounding. Accuracy
@@ -176,7 +177,5 @@ def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
     slopes = np.zeros_like(values)
     if centres.size > 2:
         steps = np.diff(values, axis=0) / np.diff(centres)[:, None]
-        step_below, step_above = steps[:-1], steps[1:]
-        magnitude = np.minimum(np.abs(step_below), np.abs(step_above))
-        slopes[1:-1] = np.where(step_below * step_above > 0, np.sign(step_below) * magnitude, 0.0)
+        slopes[1:-1] = minmod(steps[:-1], steps[1:])
     return slopes
