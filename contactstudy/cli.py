@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,14 +68,9 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     return code
 
 
-def _print(lines: Iterable[str]) -> None:
-    for line in lines:
-        print(line)
-
-
 def _print_written(*paths: Path) -> None:
     """Print the paths of written files."""
-    _print(f"wrote {_format_path(path.resolve())}" for path in paths)
+    print(*(f"wrote {_format_path(path.resolve())}" for path in paths), sep="\n")
 
 
 def _study(options: argparse.Namespace) -> Study:
@@ -129,7 +124,7 @@ def _finish(report: RunReport, *, complete: bool, figure: bool) -> int:
             lines += [f"wrote {_format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             lines.append(f"  no figure: {error}")
-    _print([*_run_lines(report), *lines])
+    print(*_run_lines(report), *lines, sep="\n")
     return ALL_OK if not report.failures else SOME_FAILED
 
 
@@ -180,7 +175,7 @@ def _plan(options: argparse.Namespace) -> int:
     plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
-    _print(_state_lines(states, everything=options.all))
+    print(*_state_lines(states, everything=options.all), sep="\n")
     return ALL_OK if plan.unique else USAGE  # `run` also refuses a study without cases to solve
 
 
@@ -193,7 +188,7 @@ def _status(options: argparse.Namespace) -> int:
     print(f"study {study.name}: {len(states.plan)} cases, results in {_format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    _print(_state_lines(states, everything=options.all))
+    print(*_state_lines(states, everything=options.all), sep="\n")
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 

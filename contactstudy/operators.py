@@ -21,7 +21,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.equivalent_loads import overlapping_operators
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
-from contactstudy.fields.surface import surface_operator
+from contactstudy.fields.surface import DIRECTIONS, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.threads import one_blas_thread
@@ -29,7 +29,6 @@ from contactstudy.threads import one_blas_thread
 __all__ = ["Overlapping", "stress", "surface_displacement"]
 
 LOADS = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load.ALONG_Y}
-COMPONENTS = {"z": Load.NORMAL, "x": Load.ALONG_X, "y": Load.ALONG_Y}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -181,7 +180,7 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     checks.instance("grid", grid, Grid, "a Grid")
     if any(part.free_ends is not None and part.free_ends.mirrored_once for part in body.terms):
         raise InvalidInputError("body.model", "single-mirror", "a model with reciprocity", "its ends keep some shear")
-    direction = COMPONENTS[checks.known_name("component", component, COMPONENTS)]
+    direction = DIRECTIONS[checks.known_name("component", component, DIRECTIONS)]
     loaded = LOADS[checks.known_name("load", load, LOADS)]
     forward = surface_operator(body, grid, (loaded,), directions=(direction,))
     backward = surface_operator(body, grid, (direction,), directions=(loaded,))

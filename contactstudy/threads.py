@@ -11,12 +11,7 @@ from threadpoolctl import ThreadpoolController
 
 _LOCK, _LIMIT = Lock(), ExitStack()
 _entries = 0
-
-
-@cache
-def _controller() -> ThreadpoolController:
-    """Find the loaded libraries, which takes a millisecond, once."""
-    return ThreadpoolController()
+_controller = cache(ThreadpoolController)  # finds the loaded libraries, which takes a millisecond, once
 
 
 @contextmanager

@@ -125,12 +125,10 @@ def in_plane(
 
     Parameters
     ----------
-    dataset : Dataset
-        One case.
+    dataset, variables
+        As for :func:`along_line`.
     x, y, z : float, optional
         Position of the plane, metres; exactly one of them.
-    variables : str or sequence of str, optional
-        As for :func:`along_line`.
 
     Returns
     -------

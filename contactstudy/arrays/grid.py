@@ -243,3 +243,13 @@ def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:
 def centres_of(edges: FloatArray) -> FloatArray:
     """Centres of the cells between `edges`."""
     return np.asarray(0.5 * (edges[1:] + edges[:-1]))
+
+
+def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
+    """Values (x, ...) at other positions along x, linear between the centres and constant beyond the outermost ones."""
+    if centres.size == 1:
+        return np.repeat(values, x.size, axis=0)
+    right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
+    fraction = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)
+    fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
+    return np.asarray((1 - fraction) * values[right - 1] + fraction * values[right])

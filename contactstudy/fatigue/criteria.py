@@ -317,10 +317,8 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     Parameters
     ----------
-    stress : Dataset
-        As for :func:`contactstudy.fatigue.dang_van`.
-    limits : FatigueLimits
-        Limits of the material.
+    stress, limits
+        As for :func:`dang_van`.
 
     Returns
     -------

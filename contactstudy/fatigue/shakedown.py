@@ -113,10 +113,8 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
 
     Parameters
     ----------
-    stress : Dataset
-        As for :func:`shakedown`: a single case, or an opened study with all its cases.
-    axial : bool
-        See :func:`shakedown`.
+    stress, axial
+        As for :func:`shakedown`; the stresses of a single case, or of an opened study with all its cases.
 
     Returns
     -------
@@ -283,11 +281,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     case = single_case(stress)
     tensor, rolling_dim = stack_history(case)
     dims = [dimension_along(tensor, axis) for axis in ("x", "z")]
-    x, z = (np.asarray(positions(tensor, axis).values, dtype=np.float64) for axis in ("x", "z"))
-    for axis, points in (("x", x), ("z", z)):
-        if points.size < MIN_POINTS or (np.diff(points) <= 0).any():
-            allowed = f"at least {MIN_POINTS} positions, increasing"
-            raise InvalidInputError(f"stress.{axis}", points, allowed, "solve with more positions")
+    x, z = (checks.increasing(f"stress.{axis}", positions(tensor, axis).values, minimum=MIN_POINTS) for axis in "xz")
     values = tensor.transpose(*dims, rolling_dim, ...).values.astype(np.float64)
     history = values.reshape(-1, *values.shape[2:])
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)

@@ -288,6 +288,7 @@ def _invert_matrix(matrix: FloatArray) -> FloatArray:
     return np.asarray((eigenvectors / eigenvalues) @ eigenvectors.T)
 
 
+DIRECTIONS = {"x": Load.ALONG_X, "y": Load.ALONG_Y, "z": Load.NORMAL}  # of a displacement, by axis
 NORMAL = (Load.NORMAL,)  # directions of a contact without friction
 RESOLUTION = Resolution()  # quadrature settings of the free ends' part
 
@@ -429,9 +430,9 @@ def surface_displacement(
     2.24
     """
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
     selected = "z" if components is None else components
-    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in selected))
+    axes = [checks.known_name("components", axis, DIRECTIONS) for axis in selected]
+    directions = tuple(dict.fromkeys(DIRECTIONS[axis] for axis in axes))
     if not directions:
         raise InvalidInputError("components", components, "at least one of x, y and z, or None")
     grid, loads = prescribed.grid, prescribed.loads
@@ -444,15 +445,12 @@ def surface_displacement(
         reference = "zero at |y| = reference_distance (m) on the top"
         attributes = {"reference_distance": distance, "reference": reference}
     coords = {"x": pressure["x"], "y": pressure["y"]}
-    fields = {
-        name: name_array(name, xr.DataArray(displacements[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
-        for name, direction in DISPLACEMENTS.items()
+    arrays = {
+        f"displacement_{axis}": xr.DataArray(displacements[direction], coords, dims=("x", "y"))
+        for axis, direction in DIRECTIONS.items()
         if direction in displacements
     }
+    fields = {name: name_array(name, array).assign_attrs(attributes) for name, array in arrays.items()}
     if components is None:
         return fields["displacement_z"]
     return describe(xr.Dataset(fields), "displacements of the top under a prescribed load")
-
-
-DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
-"""Variables of the surface displacement."""

@@ -26,7 +26,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, labelled_cells, require_in_si
 from contactstudy.case.case import Case
 from contactstudy.case.magnitudes import warn_of_values
-from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.case.motion import Rolling, Shift, Sliding, SurfaceSpeeds
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
 
@@ -234,8 +234,7 @@ class FrictionalHeat(NamedTuple):
     """Frictional heat on the cells, and the speeds of the surfaces relative to the contact."""
 
     density: FloatArray
-    body_speed: float
-    roller_speed: float
+    speeds: SurfaceSpeeds
 
 
 def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
@@ -250,7 +249,7 @@ def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
         q_x, s_x, q_y, s_y = fields
         # Power per area is traction times slip per distance, times distance per time.
         density = -speeds.entrainment * np.maximum(q_x * s_x + q_y * s_y, 0.0)
-        return FrictionalHeat(density, speeds.body, speeds.roller)
+        return FrictionalHeat(density, speeds)
     assert isinstance(motion, Sliding)
     if motion.speeds is None:
         raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
@@ -263,7 +262,7 @@ def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
             relation = "equal to, as the friction changes its sign along the axis,"
         allowed = f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding"
         raise InvalidInputError("case.motion.roller_speed", roller_speed, allowed, "speeds are along +y")
-    return FrictionalHeat(density, body_speed, roller_speed)
+    return FrictionalHeat(density, motion.speeds)
 
 
 RESTART, MAX_RESTARTS = 60, 20  # Steps between restarts, and restarts
@@ -413,7 +412,7 @@ def flash_temperature(
     inherited = solution[[name for name in inherited_names if name in solution.variables]].drop_attrs(deep=False)
     temperatures = inherited.assign(values | scalars)
     if depths is not None:
-        moving_body, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
+        moving_body, columns = MovingBody(body, heat.speeds.body, case.body.extent), slice(0, grid.cells_x)
         inner_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]
         temperatures = temperatures.assign_coords(z=depths)
         temperatures["body_temperature_rise"] = (("x", "y", "z"), np.stack(inner_rises, axis=-1))
@@ -438,12 +437,12 @@ def _solve_temperatures(
     fraction: float | None,
 ) -> tuple[dict[str, FloatArray], FloatArray, float]:
     """Rises of the surfaces by name, heat into the body, and relative difference of the temperatures."""
-    body_rise = SourceOperator(MovingBody(body, heat.body_speed, case.body.extent), grid, slice(0, grid.cells_x))
+    body_rise = SourceOperator(MovingBody(body, heat.speeds.body, case.body.extent), grid, slice(0, grid.cells_x))
     if roller is None:
         assert fraction is not None
         return {"temperature_rise": body_rise(fraction * heat.density)}, fraction * heat.density, np.nan
     columns, ends = _under_roller(case, grid, pressure)
-    roller_rise = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
+    roller_rise = SourceOperator(MovingBody(roller, heat.speeds.roller, ends), grid, columns)
     if fraction is None:
         into_body, mismatch = partition_heat(body_rise, roller_rise, heat.density, pressure > 0)
     else:

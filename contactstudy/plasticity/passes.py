@@ -9,7 +9,7 @@ from __future__ import annotations
 import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -61,8 +61,8 @@ class ElasticPlastic:
     """
 
     yield_stress: float | xr.DataArray
-    isotropic_hardening: float = 0.0
-    kinematic_hardening: float = 0.0
+    isotropic_hardening: float = field(default=0.0, metadata=checks.number(checks.not_negative, "Pa"))
+    kinematic_hardening: float = field(default=0.0, metadata=checks.number(checks.not_negative, "Pa"))
 
     def __post_init__(self) -> None:
         if isinstance(self.yield_stress, xr.DataArray):
@@ -74,8 +74,7 @@ class ElasticPlastic:
             checks.store(self, yield_stress=profile)
         else:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
-        for name in ("isotropic_hardening", "kinematic_hardening"):
-            checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
+        checks.store_numbers(self)
         warn_of_values(stacklevel=4, yield_stress=np.asarray(self.yield_stress))
 
     @classmethod

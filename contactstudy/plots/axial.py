@@ -337,13 +337,11 @@ def plot_profile(
         Profile to draw.
     length : float
         Length of the roller, metres.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, **style
+        As for :func:`plot_axial_pressure`.
     deepest : float, optional
         Largest drop on the axis, metres; default: the profile's largest drop. Limit it for crowns of micrometres with
         fillets of tenths of a millimetre.
-    **style
-        Style of the line, as in matplotlib.
 
     Returns
     -------

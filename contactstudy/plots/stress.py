@@ -71,14 +71,12 @@ def plot_stress_plane(
 
     Parameters
     ----------
-    dataset : Dataset
-        A single case with stresses.
+    dataset, ax, si
+        As for :func:`plot_depth`.
     variable : str
         A stress, or a measure, see :func:`contactstudy.analysis.measure`.
     y, x, z : float, optional
         Position of the plane, metres, at most one; default: ``y = 0``. Interpolated between positions of the result.
-    ax, si
-        As for :func:`plot_axial_pressure`.
     levels : int or sequence of float, optional
         Contour levels, or their approximate number.
     colorbar : bool

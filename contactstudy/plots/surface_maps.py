@@ -106,9 +106,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
 
     Parameters
     ----------
-    dataset : Dataset
-        A single case with `pressure`.
-    ax, si
+    dataset, ax, si
         As for :func:`plot_axial_pressure`.
 
     Returns
@@ -219,10 +217,8 @@ def plot_traction_map(
 
     Parameters
     ----------
-    dataset : Dataset
-        A single case with stick and slip.
-    ax, si
-        As for :func:`plot_axial_pressure`.
+    dataset, ax, si
+        As for :func:`plot_stick_and_slip`.
     variable : {"traction", "slip"}
         Vector to draw. The slip is the roller's against the body: per distance rolled, or of a shift.
 
@@ -313,10 +309,8 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
 
     Parameters
     ----------
-    dataset : Dataset
-        Result of `solve_film`.
-    ax, si
-        As for :func:`plot_axial_pressure`.
+    dataset, ax, si
+        As for :func:`plot_film_line`.
     fringes : int
         Number of contours up to 1.5 times the central film.
 

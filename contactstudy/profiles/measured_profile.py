@@ -321,15 +321,15 @@ def interpolate_with_limited_slopes(x: FloatArray, drops: FloatArray) -> Any:
     bends = np.diff(secants) / (steps[1:] + steps[:-1])
     bends = np.concatenate([bends[:1], bends, bends[-1:]])
     slopes = np.append(secants - bends[:-1] * steps, secants[-1] + bends[-1] * steps[-1])
-    shared_bends = _minmod(bends[:-1], bends[1:])
+    shared_bends = minmod(bends[:-1], bends[1:])
     left_slopes, right_slopes = secants + shared_bends * steps, secants - shared_bends * steps
-    quadratic = np.concatenate([right_slopes[:1], _minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
-    monotone = np.concatenate([secants[:1], _minmod(secants[:-1], secants[1:]), secants[-1:]])
+    quadratic = np.concatenate([right_slopes[:1], minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
+    monotone = np.concatenate([secants[:1], minmod(secants[:-1], secants[1:]), secants[-1:]])
     limits = np.copysign(np.maximum(3 * np.abs(monotone), 1.5 * np.abs(quadratic)), quadratic)
-    return CubicHermiteSpline(x, drops, _minmod(slopes, np.where(quadratic == 0, 0.0, limits)))
+    return CubicHermiteSpline(x, drops, minmod(slopes, np.where(quadratic == 0, 0.0, limits)))
 
 
-def _minmod(first: FloatArray, second: FloatArray) -> FloatArray:
+def minmod(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return the value closer to 0 where both signs agree; 0 elsewhere."""
     smaller = np.minimum(np.abs(first), np.abs(second))
     return np.asarray(np.where(first * second > 0, np.copysign(smaller, first), 0.0))

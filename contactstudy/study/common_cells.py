@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of
+from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of, interpolate_columns
 from contactstudy.checks import FloatArray
+from contactstudy.profiles.measured_profile import minmod
 
 MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases beside its edges. Accuracy
 END_WIDTH = 1e-10  # Width of the cell on the end of a case over the longest case, above rounding. Accuracy
@@ -142,18 +143,12 @@ class Resampling:
         if self.has_points:
             order = np.argsort(self.source)
             positions, values = self.source[order], values[order]
-        if positions.size == 1:
-            result = np.repeat(values, self.axis.size, axis=0)
-        else:
-            cells = np.clip(np.searchsorted(positions, self.axis) - 1, 0, positions.size - 2)
-            fraction = np.clip((self.axis - positions[cells]) / (positions[cells + 1] - positions[cells]), 0.0, 1.0)
-            fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
-            with np.errstate(invalid="ignore"):
-                result = (1 - fraction) * values[cells] + fraction * values[cells + 1]
-            # Next to an infinite gap linear interpolation has no value.
-            containing = np.searchsorted(self.source, self.axis) - 1
-            nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
-            result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
+        with np.errstate(invalid="ignore"):
+            result = interpolate_columns(values, positions, self.axis)
+        # Next to an infinite gap linear interpolation has no value.
+        containing = np.searchsorted(self.source, self.axis) - 1
+        nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
+        result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
         result[self.is_outside] = np.nan
         return result
 
@@ -182,7 +177,5 @@ def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
     slopes = np.zeros_like(values)
     if centres.size > 2:
         steps = np.diff(values, axis=0) / np.diff(centres)[:, None]
-        step_below, step_above = steps[:-1], steps[1:]
-        magnitude = np.minimum(np.abs(step_below), np.abs(step_above))
-        slopes[1:-1] = np.where(step_below * step_above > 0, np.sign(step_below) * magnitude, 0.0)
+        slopes[1:-1] = minmod(steps[:-1], steps[1:])
     return slopes

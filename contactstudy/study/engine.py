@@ -18,7 +18,6 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
 from itertools import groupby
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks
@@ -264,7 +263,11 @@ class Tasks:
         cases = [case for case in task.cases if case not in failed]
         if died:
             self._suspect_cases.update(case.id for case in cases)
-        parts = [list(part) for _, part in groupby(cases, attrgetter("solved_with"))] if died else [cases]
+
+        def solved_with(case: PlannedCase) -> int | str:  # a film starts from the other films of its group
+            return case.group if "entrainment_speed" in case.parameters else case.id
+
+        parts = [list(part) for _, part in groupby(cases, solved_with)] if died else [cases]
         self._returned.extend(replace(task, cases=tuple(part)) for part in parts if part)
         self.remaining += len(cases)
         return failed

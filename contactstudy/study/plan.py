@@ -102,11 +102,6 @@ class PlannedCase:
     group: int  # number of the group, whose cases share a contact
     reason: str = ""  # why the plan skips the case, or empty
 
-    @property
-    def solved_with(self) -> int | str:
-        """Group of a film, which starts from the other films of the group; of any other case its identity."""
-        return self.group if "entrainment_speed" in self.parameters else self.id
-
 
 class Review(NamedTuple):
     """Result of setting up one case of each group, or of a sample of the groups."""

@@ -13,7 +13,7 @@ from scipy.interpolate import make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
-from contactstudy.arrays.grid import growing_edges
+from contactstudy.arrays.grid import centres_of, growing_edges
 from contactstudy.arrays.variables import require
 from contactstudy.case.case import GAP_NODES, Case
 from contactstudy.checks import FloatArray
@@ -106,11 +106,6 @@ class _Columns:
         is_uncut = uniform & (edges[:-1] >= start - rounding) & (edges[1:] <= stop + rounding)
         return cls(clipped, np.where(is_uncut[:, None], centres[:, None], points))
 
-    @property
-    def midpoints(self) -> FloatArray:
-        """Midpoints of the columns."""
-        return np.asarray(0.5 * (self.edges[1:] + self.edges[:-1]))
-
     def mean_depths(self, profile: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Mean depths of a profile over the columns."""
         return np.asarray(0.5 * profile(self.points.ravel()).reshape(self.points.shape) @ GAUSS_WEIGHTS)
@@ -125,7 +120,7 @@ def _sharp_end_depth(
     """
     ends, length = np.array(case.contact_range), case.contact_length
     modulus = case.body.material.plane_strain_modulus
-    inward_slopes = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(columns.midpoints)[[0, -1]]
+    inward_slopes = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(centres_of(columns.edges))[[0, -1]]
     outer_lengths = np.abs(ends - case.body.extent)
     pressures = [float(column[column > 0].mean()) if (column > 0).any() else 0.0 for column in pressure[[0, -1]]]
     slopes = np.clip(2 * np.array(pressures) / (np.pi * modulus), 0.0, np.maximum(inward_slopes, 0.0))
@@ -149,7 +144,7 @@ def _fit_profile(
     volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _interpolate_borders(case, columns, depth)
-    edges, midpoints = columns.edges, columns.midpoints
+    edges, midpoints = columns.edges, centres_of(columns.edges)
     # Points between the outer column's midpoint and the end; each point is half as far from the end as the one before
     fractions = 0.5 ** np.arange(1, 11)
     first, last = start + fractions * (midpoints[0] - start), stop - fractions * (stop - midpoints[-1])
@@ -187,7 +182,7 @@ def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> li
             indices = np.sort(first_unworn + step * np.arange(5))
             indices = indices[(indices >= 0) & (indices < depth.size)]
             if np.isfinite(shape[indices]).all() and indices.size > 2:
-                borders.append(interpolate_with_limited_slopes(columns.midpoints[indices], shape[indices]))
+                borders.append(interpolate_with_limited_slopes(centres_of(columns.edges)[indices], shape[indices]))
     return borders
 
 

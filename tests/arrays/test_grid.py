@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Grid, InvalidInputError
-from contactstudy.arrays.grid import MAX_WIDTH_RATIO, growing_edges
+from contactstudy.arrays.grid import MAX_WIDTH_RATIO, growing_edges, interpolate_columns
+from contactstudy.checks import FloatArray
 
 Y_RANGE = (-1.0, 1.0)
 
@@ -107,3 +108,14 @@ def test_growing_edges_cover_distance(distance: float, width: float) -> None:
 def test_growing_edges_of_extreme_distances() -> None:
     assert growing_edges(0.0, 1.0).size == 0
     assert growing_edges(np.inf, 0.5).tolist() == [0.5]
+
+
+@pytest.mark.parametrize("positions", [np.linspace(-1.0, 8.0, 46), np.array([0.0, 1.0, 3.0, 7.0])])
+def test_column_interpolation_is_linear(positions: FloatArray) -> None:
+    centres = np.array([0.0, 1.0, 3.0, 7.0])
+    cell_values = np.random.default_rng(0).standard_normal((4, 3))
+    expected = np.stack([np.interp(positions, centres, row_values) for row_values in cell_values.T], axis=1)
+    assert interpolate_columns(cell_values, centres, positions) == pytest.approx(expected, abs=1e-12)
+    assert interpolate_columns(cell_values[:1], centres[:1], positions) == pytest.approx(
+        np.repeat(cell_values[:1], positions.size, 0)
+    )

@@ -150,7 +150,7 @@ def test_limit_scales_with_load(fading_line_contact) -> None:
 
 
 def test_too_few_positions_are_rejected(fading_line_contact) -> None:
-    with pytest.raises(InvalidInputError, match="at least 5 positions"):
+    with pytest.raises(InvalidInputError, match="5 or more increasing"):
         fatigue.shakedown_in_plane(fading_line_contact(8.0, 0.1).isel(x=[0, 2, 4]), HalfSpace(material=SOFT))
 
 

@@ -14,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import Grid, interpolate_columns
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.kernels.load import Load
 
@@ -385,15 +385,6 @@ def halve_cells(values: FloatArray, axis: int) -> FloatArray:
     padded = np.concatenate([centre[:1], centre, centre[-1:]])
     halves = np.stack([0.75 * centre + 0.25 * padded[:-2], 0.75 * centre + 0.25 * padded[2:]], axis=1)
     return np.ascontiguousarray(np.moveaxis(halves.reshape(-1, *centre.shape[1:]), 0, axis))
-
-
-def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
-    """Values (x, y) at other positions along x, linear between the centres and constant beyond the outermost ones."""
-    if centres.size == 1:
-        return np.repeat(values, x.size, axis=0)
-    right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
-    fraction = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)[:, None]
-    return np.asarray((1 - fraction) * values[right - 1] + fraction * values[right])
 
 
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:

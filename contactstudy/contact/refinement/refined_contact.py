@@ -24,7 +24,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement.laws import CornerLaw, EndLaw, corner_law, elastic_exponent
+from contactstudy.contact.refinement.laws import EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
     VALUE_TOLERANCE,
     AxialShape,
@@ -134,12 +134,6 @@ def _convex_corners(case: Case) -> list[tuple[float, float]]:
     return [(x, jump) for x, jump in zip(*(values.tolist() for values in case.slope_jumps), strict=True) if jump > 0]
 
 
-def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
-    """Law of the loaded convex corner with the largest intensity; None without one."""
-    laws = [corner_law(corner, case.modulus, refined.edges, refined.pressure) for corner in _convex_corners(case)]
-    return max(filter(None, laws), key=lambda law: law.intensity, default=None)
-
-
 def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: AxialShape) -> RefinedColumns:
     """Add the error due to measured points: the change under a second interpolation, infinite at unresolved corners."""
     case = solver.case
@@ -173,7 +167,8 @@ def _cell_number_y(fraction: float, accuracy: float) -> int:
 def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
     """Label the values and their errors; a singular end has the values of its law instead of a pressure."""
     refined = refined_contact.refined
-    corner = _strongest_corner(case, refined)
+    corners = [corner_law(corner, case.modulus, refined.edges, refined.pressure) for corner in _convex_corners(case)]
+    corner = max(filter(None, corners), key=lambda law: law.intensity, default=None)  # of the loaded ones
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = refined_contact.contact.shape.grid.dy
     for side, end in enumerate(("first", "last")):

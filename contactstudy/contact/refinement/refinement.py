@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import centres_of
+from contactstudy.arrays.grid import centres_of, interpolate_columns
 from contactstudy.arrays.peaks import section_maxima
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.normal.problem import interpolate_columns
 from contactstudy.contact.refinement.laws import EndLaw, Sample, law_of
 
 FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
@@ -80,16 +79,8 @@ def first_edges(shape: AxialShape) -> FloatArray:
         edges = split_columns(edges, is_marked)
 
 
-class SampledColumns(NamedTuple):
-    """The shape in each column."""
-
-    heights: FloatArray  # (column, point): heights at points along each column, metres
-    lowest: FloatArray  # (column): least height, nodes included, metres
-    is_bent: BoolArray  # (column): whether the shape leaves its chord
-
-
-def _sample(shape: AxialShape, edges: FloatArray) -> SampledColumns:
-    """Sample the shape at points along each column and at its nodes."""
+def _sample(shape: AxialShape, edges: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Heights (column, point), the least height of each column, nodes included, and whether it leaves its chord."""
     # The outer points lie just inside the column: the shape may step at its ends.
     inside = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
     positions = edges[:-1, None] + np.diff(edges)[:, None] * inside
@@ -101,7 +92,7 @@ def _sample(shape: AxialShape, edges: FloatArray) -> SampledColumns:
         fraction = (shape.nodes - edges[columns]) / np.diff(edges)[columns]
         np.maximum.at(deviations, columns, np.abs(shape.node_heights - heights[columns, 0] - rise[columns] * fraction))
         np.minimum.at(lowest, columns, shape.node_heights)
-    return SampledColumns(heights, lowest, deviations > CHORD_TOLERANCE * shape.depth)
+    return heights, lowest, deviations > CHORD_TOLERANCE * shape.depth
 
 
 def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
@@ -373,8 +364,7 @@ class Refinement:
 
     def _half_pressure(self, side: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
-        pressure: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
-        return pressure
+        return np.asarray(self.pressure[first_half if side == 0 else ~first_half])
 
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
         """Columns of a threshold, with values and errors; the values join the history."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid, HalfSpace, Material
+from contactstudy.arrays.grid import interpolate_columns
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.problem import (
     ContactOperator,
@@ -18,7 +19,6 @@ from contactstudy.contact.normal.problem import (
     _initial_guess,
     _remove_mean_slope,
     halve_cells,
-    interpolate_columns,
     solve_normal,
     solve_problem,
 )
@@ -88,17 +88,6 @@ def test_coupled_rounds_end_without_bending_change() -> None:
     assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
     uncoupled_iterate = solve_normal(operator, request)
     assert np.abs(uncoupled_iterate.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
-
-
-@pytest.mark.parametrize("positions", [np.linspace(-1.0, 8.0, 46), np.array([0.0, 1.0, 3.0, 7.0])])
-def test_column_interpolation_is_linear(positions: FloatArray) -> None:
-    centres = np.array([0.0, 1.0, 3.0, 7.0])
-    cell_values = np.random.default_rng(0).standard_normal((4, 3))
-    expected = np.stack([np.interp(positions, centres, row_values) for row_values in cell_values.T], axis=1)
-    assert interpolate_columns(cell_values, centres, positions) == pytest.approx(expected, abs=1e-12)
-    assert interpolate_columns(cell_values[:1], centres[:1], positions) == pytest.approx(
-        np.repeat(cell_values[:1], positions.size, 0)
-    )
 
 
 def test_halved_cells_are_linear_between_centres() -> None:
