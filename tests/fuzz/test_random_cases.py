@@ -10,10 +10,7 @@ from hypothesis import strategies as st
 
 from benchmarks.fuzz.outcome import outcome_of
 
-# The same examples in CI whatever the profile.
-SHORT = settings(
-    settings.get_profile("short"), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
-)
+SHORT = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
 def look_at(rng: Random, *, refined: bool) -> None:
