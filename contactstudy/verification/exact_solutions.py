@@ -34,7 +34,11 @@ from contactstudy.verification.problems import (
 )
 
 POISSON = 0.3  # Poisson's ratio of every body here, unless a check states another value
-UNIT_HALF_SPACE = HalfSpace(material=unit_material(POISSON))
+
+
+def _half_space() -> HalfSpace:
+    """Half-space of the unit material."""
+    return HalfSpace(material=unit_material(POISSON))
 
 
 def _finite(length: float) -> FiniteLengthSpace:
@@ -45,7 +49,7 @@ def _finite(length: float) -> FiniteLengthSpace:
 def hertz_checks() -> Iterator[Check]:
     """Hertz point, elliptic and line contact."""
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (129, 129))
-    contact = solve_contact(UNIT_HALF_SPACE, gap, load=4 / 3)
+    contact = solve_contact(_half_space(), gap, load=4 / 3)
     _, peak, approach = closed_forms.hertz_point(4 / 3, 1.0, 1.0)
     reference = Reference("Hertz point contact, 129 x 129 cells", "Hertz; Johnson (1985) 4.22 to 4.24")
     line = contact["pressure"].sel(y=0, method="nearest")
@@ -58,7 +62,7 @@ def hertz_checks() -> Iterator[Check]:
     ellipse = closed_forms.hertz_ellipse(4 / 3, long_radius, short_radius, 1.0)
     x_range, y_range = ((-1.25 * axis, 1.25 * axis) for axis in (ellipse.long, ellipse.short))
     gap = on_cells(lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius), x_range, y_range, (129, 129))
-    contact = solve_contact(UNIT_HALF_SPACE, gap, load=4 / 3)
+    contact = solve_contact(_half_space(), gap, load=4 / 3)
     case = f"Hertz elliptic contact, radii 4 to 1, axes {ellipse.long / ellipse.short:.2f} to 1"
     reference = Reference(case, "Hertz; Johnson (1985) 4.26 to 4.32")
     yield reference.compare("peak pressure", contact["pressure"].max(), ellipse.max_pressure, 2e-4, relative=True)
@@ -68,7 +72,7 @@ def hertz_checks() -> Iterator[Check]:
     yield reference.compare("long semi-axis over its value", half_length / ellipse.long, 1.0, 0.015)
 
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 60), (-2, 2), (240, 129))
-    contact = solve_contact(UNIT_HALF_SPACE, gap.where(abs(gap["x"] - 30) < 28, np.inf), load=56 * LINE_LOAD)
+    contact = solve_contact(_half_space(), gap.where(abs(gap["x"] - 30) < 28, np.inf), load=56 * LINE_LOAD)
     line = contact["pressure"].sel(x=30, method="nearest")
     load = float(line.sum()) * 4 / 129
     half_width, peak = closed_forms.hertz_line(load, 0.5, 1.0)
@@ -83,14 +87,14 @@ def circle_checks() -> Iterator[Check]:
     """Stresses under a circular Hertz pressure, at rest and sliding."""
     circle = on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
     z = np.linspace(0, 3, 31)
-    stress = stress_field(UNIT_HALF_SPACE, circle, x=[0.0], y=[0.0], z=z, inside_cells=circle).isel(x=0, y=0)
+    stress = stress_field(_half_space(), circle, x=[0.0], y=[0.0], z=z, inside_cells=circle).isel(x=0, y=0)
     axial, radial = closed_forms.hertz_circle_axis(z, 1.0, 1.0, POISSON)
     curve = Curve(("z / a", "sigma_xx / p0"), z, stress["sigma_xx"].values, radial)
     computed = [stress["sigma_zz"], stress["sigma_xx"]]
     reference = Reference("circular Hertz pressure, on the axis", "Johnson (1985) 3.45")
     yield reference.compare("sigma_zz, sigma_xx / p0", computed, [axial, radial], 2e-4, curve=curve)
     x, y, z = np.array([0.0, 0.5, 1.2]), np.linspace(-1.5, 1.5, 13), np.array([0.1, 0.25, 0.5, 1.0, 2.0])
-    stress = stress_field(UNIT_HALF_SPACE, circle, friction=0.25, x=x, y=y, z=z, inside_cells=circle)
+    stress = stress_field(_half_space(), circle, friction=0.25, x=x, y=y, z=z, inside_cells=circle)
     at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
     exact = closed_forms.hertz_circle(at_x, at_y, at_z, 1.0, 1.0, poisson=POISSON, friction=0.25)
     profiles = stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1]
@@ -102,7 +106,7 @@ def circle_checks() -> Iterator[Check]:
 
 def line_checks() -> Iterator[Check]:
     """Stresses in the middle of a long strip under a line contact's pressure, on the top and below."""
-    body, length, cells_y, half_window = UNIT_HALF_SPACE, 2000.0, 160, 1.25
+    body, length, cells_y, half_window = _half_space(), 2000.0, 160, 1.25
     pressure = strip_means((0, length), (-half_window, half_window), (80, cells_y))
     cell = 2 * half_window / cells_y
     # Points at edges and middles of cells and in between, except in the last cell in contact and at its border.
@@ -135,7 +139,7 @@ def line_checks() -> Iterator[Check]:
 
 def rectangle_checks() -> Iterator[Check]:
     """Uniform pressure on a rectangle."""
-    body, half_x, half_y = UNIT_HALF_SPACE, 1.0, 0.5
+    body, half_x, half_y = _half_space(), 1.0, 0.5
     pressure = on_cells(lambda x, y: np.ones_like(x + y), (-half_x, half_x), (-half_y, half_y), (12, 8))
     z = np.array([0.2, 0.5, 1.0, 2.0, 5.0])
     stress = stress_field(body, pressure, x=[half_x], y=[half_y], z=z).isel(x=0, y=0)
@@ -168,7 +172,7 @@ def point_checks() -> Iterator[Check]:
         (0.0, Reference(case, "Boussinesq (1885); Johnson 3.2")),
         (1.0, Reference(f"{case}, f = 1", "Boussinesq and Cerruti; Johnson 3.2, 3.6")),
     ):
-        computed = components(stress_field(UNIT_HALF_SPACE, pressure, friction=friction, **positions))
+        computed = components(stress_field(_half_space(), pressure, friction=friction, **positions))
         exact = components(closed_forms.point_load(x, y, z, POISSON, 1.0, tangential=friction))
         scale = np.abs(exact).max()
         yield reference.compare("six stresses over the largest", computed / scale, exact / scale, 1e-3)
@@ -216,7 +220,7 @@ def body_checks() -> Iterator[Check]:
     bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
     finite, half_space = (
         stress_field(body, bump, friction=0.2, x=[19.0, 20.0, 20.5], **points, inside_cells=bump)
-        for body in (_finite(40.0), UNIT_HALF_SPACE)
+        for body in (_finite(40.0), _half_space())
     )
     reference = Reference("body of length 40a loaded over 2a in its middle, f = 0.2", "half-space under the same load")
     yield reference.compare("six stresses / p0", components(finite), components(half_space), 1e-3)
