@@ -117,6 +117,7 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
     passage = cs.solve(CASE, GRID, **PASSAGE)
     film = cs.solve_film(LUBRICATED, accuracy=0.2, resolution=FILM_CELLS)
     elastic_plastic = cs.plasticity.ElasticPlastic(yield_stress=4e8)
+    limits = cs.fatigue.FatigueLimits(torsion=4e8, bending=6e8)
     thermal = cs.heat.ThermalProperties(conductivity=50.0, density=7850.0, specific_heat=460.0)
     return {
         "solve": lambda: cs.solve(CASE, GRID, **POINTS),
@@ -135,6 +136,11 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
         "slice_model": lambda: cs.bearing.slice_model(CASE),
         "lamina_factors": lambda: cs.bearing.lamina_factors(solution),
         "shakedown": lambda: cs.fatigue.shakedown(passage),
+        "dang_van": lambda: cs.fatigue.dang_van(passage, limits),
+        "crossland": lambda: cs.fatigue.crossland(passage, limits),
+        "findley": lambda: cs.fatigue.findley(passage, limits),
+        "principal_stresses": lambda: cs.stress.principal_stresses(passage),
+        "von_mises": lambda: cs.stress.von_mises(passage),
         "residual_stress": lambda: cs.plasticity.residual_stress(passage, BODY, elastic_plastic, passes=1),
         "flash_temperature": lambda: cs.heat.flash_temperature(CASE, solution, body=thermal, roller=thermal),
     }
