@@ -127,15 +127,15 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"{name}: the pressure is singular", flush=True)
             continue
         compared.append(comparison)
-        place = "top" if comparison.result.peak_von_mises_z == 0 else "below"
-        print(f"{name}: {comparison.change:+.2%}, stated {comparison.error:.2%}, {place}", flush=True)
+        region = "top" if comparison.result.peak_von_mises_z == 0 else "below"
+        print(f"{name}: {comparison.change:+.2%}, stated {comparison.error:.2%}, {region}", flush=True)
     changes, errors = np.array([(abs(comparison.change), comparison.error) for comparison in compared]).T
-    held = int((changes <= errors).sum())
+    covered_count = int((changes <= errors).sum())
     print(
-        f"{len(compared)} cases, {held} stated errors hold; difference: median {np.median(changes):.2%}, "
+        f"{len(compared)} cases, {covered_count} stated errors hold; difference: median {np.median(changes):.2%}, "
         f"largest {changes.max():.2%}; stated error: median {np.median(errors):.2%}"
     )
-    return int(held < len(compared))
+    return int(covered_count < len(compared))
 
 
 if __name__ == "__main__":

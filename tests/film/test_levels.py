@@ -15,11 +15,11 @@ def test_dry_start_converges_on_columns_of_a_thin_film(monkeypatch):
     """Cells leave the contact one by one: from the gap alone the surfaces overlap by 120 films after 500 iterations."""
     iterates = []
 
-    class StartFoundError(Exception):
+    class NewtonReachedError(Exception):
         pass
 
     def stop(*_arguments, **_settings):
-        raise StartFoundError
+        raise NewtonReachedError
 
     def record(*arguments):
         iterates.append(solve_normal(*arguments))
@@ -29,6 +29,6 @@ def test_dry_start_converges_on_columns_of_a_thin_film(monkeypatch):
     monkeypatch.setattr(levels, "solve_normal", record)
     monkeypatch.setattr(levels, "solve_newton", stop)
     film = create_film_case(random_case(Random(1051)))
-    with pytest.raises(StartFoundError):
+    with pytest.raises(NewtonReachedError):
         levels.film_on_level(film, film.coarsest_level, SETTINGS)
     assert iterates[0].converged
