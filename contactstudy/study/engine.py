@@ -75,7 +75,6 @@ class Engine:
     def client(self, cases: int, notify: Callable[[str], None]) -> Iterator[Client]:
         """Client of the scheduler, or of local processes, which end with the block; few `cases` need few processes."""
         from dask.system import CPU_COUNT
-        from distributed.comm.core import CommClosedError
 
         if self.scheduler is None:
             with _local_client(min(CPU_COUNT if self.workers is None else self.workers, cases)) as local_client:
@@ -86,11 +85,17 @@ class Engine:
             remote_client: contextlib.AbstractContextManager[Client] = _remote_client(self.scheduler)
         else:
             remote_client = contextlib.nullcontext(self.scheduler)
-        try:
-            with remote_client as client:
-                yield client
-        except (CommClosedError, TimeoutError) as error:
-            raise StudyFileError(SCHEDULER_LOST) from error
+        with remote_client as client:
+            yield client
+
+
+@contextlib.contextmanager
+def _report_lost_scheduler() -> Iterator[None]:
+    """Replace each error of the connection; those of tasks, which may be errors of files, are raised elsewhere."""
+    try:
+        yield
+    except OSError as error:  # dask raises OSError itself, or one of its subclasses, depending on the moment
+        raise StudyFileError(SCHEDULER_LOST) from error
 
 
 @contextlib.contextmanager
@@ -299,6 +304,7 @@ class Workers:
         self._last_present = time.monotonic()
         self._announced = False
 
+    @_report_lost_scheduler()
     def usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all are excluded, or no worker came for too long."""
         connected_workers = set(self._client.nthreads())
@@ -363,7 +369,9 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                 continue
             error = future.exception() if future.status == "error" else None
             if future.status == "finished":
-                yield tasks.finish(task, future.result(), time.monotonic() - start_time)
+                with _report_lost_scheduler():
+                    records = future.result()
+                yield tasks.finish(task, records, time.monotonic() - start_time)
             elif future.status in ("cancelled", "lost"):
                 raise StudyFileError(SCHEDULER_LOST)
             elif isinstance(error, ImportError):

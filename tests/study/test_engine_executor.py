@@ -1,5 +1,7 @@
 """Tasks and their sizes, and workers that die."""
 
+from unittest import mock
+
 import pytest
 
 from contactstudy.study import StudyFileError
@@ -95,3 +97,13 @@ def test_workers_of_another_version_are_left_out():
     assert len(messages) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
         Workers(FakeClient({"old": "0.0.1"}), 0.0, messages.append).usable(busy=False)
+
+
+@pytest.mark.parametrize("method", ["nthreads", "get_versions"])
+@pytest.mark.parametrize("error", [OSError("Timed out trying to connect"), TimeoutError()])
+def test_connection_error_names_scheduler(monkeypatch, method, error):
+    """Dask raises OSError itself if the scheduler ends before a message, and a subclass if it ends during one."""
+    client = FakeClient({"worker": "0.0.1"})
+    monkeypatch.setattr(client, method, mock.Mock(side_effect=error))
+    with pytest.raises(StudyFileError, match="scheduler has gone away"):
+        Workers(client, 1.0, print).usable(busy=True)
