@@ -206,6 +206,18 @@ def test_end_near_free_end_has_larger_error(width: float) -> None:
     assert nearly_flush.intensity_error == np.inf
 
 
+def test_elastic_end_has_larger_error_of_change() -> None:
+    """The factor 1.5 multiplies the change with the limits of the fit, not the error of the steps."""
+    pressure = column_means(EDGES, 0.5, 2.0, 0.01)[:, None]
+    pressure[np.searchsorted(EDGES, 90.0)] *= 1.1
+    rigid, elastic = (
+        EndLaw(exponent=exponent).with_intensity(EDGES, pressure, np.inf) for exponent in (0.5, np.nextafter(0.5, 0.0))
+    )
+    changes = [law.intensity_error - 3e-3 * law.intensity for law in (rigid, elastic)]
+    assert rigid.intensity_error > 1.5 * 3e-3 * rigid.intensity
+    assert changes[1] == pytest.approx(1.5 * changes[0])
+
+
 def test_rigid_exponent_bounds_elastic_exponent() -> None:
     edges = graded_edges(1e-3)
     law = EndLaw(exponent=np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)

@@ -18,11 +18,13 @@ from contactstudy.contact.refinement.refinement import (
     END_COLUMN_WIDTH,
     MAX_COLUMNS,
     MAX_WIDTH_RATIO,
+    MIN_CHORD_WIDTH,
     MIN_END_COLUMN,
     AxialShape,
     ColumnPressure,
     Refinement,
     _change_error,
+    find_overlooked,
     first_edges,
     refine_coarsely,
     refine_columns,
@@ -113,6 +115,25 @@ def test_first_columns_split_at_curvature() -> None:
     baseline = np.diff(first_edges(shape()))
     assert widths.size > baseline.size
     assert widths[-len(baseline) // 3 :].max() < baseline.max()
+
+
+@pytest.mark.parametrize("crest", [2.2, 9.1, 17.7])
+def test_first_columns_resolve_crest_between_samples(crest: float) -> None:
+    """The crest is narrower than the distance of two samples: only the nodes contain it."""
+    nodes = np.sort(np.append(np.linspace(0.0, LENGTH, 201), crest + np.array([-4e-4, 1e-4, 5e-4])))
+    heights = np.where(np.abs(nodes - crest) < 2e-4, 0.0, 0.02)
+    ridge = replace(shape(), height=lambda x: np.interp(x, nodes, heights), nodes=nodes)
+    edges = first_edges(ridge)
+    widths = np.diff(edges)
+    assert widths[np.searchsorted(edges, crest) - 1] <= MIN_CHORD_WIDTH * HALF_WIDTH
+    assert edges.size < 1.5 * first_edges(shape()).size
+
+
+def test_open_column_with_step_at_end_is_not_overlooked() -> None:
+    stepping_shape = replace(shape(), height=lambda x: np.where((x > 0.0) & (x < LENGTH), 0.0, 1e3))
+    edges, loaded = np.linspace(0.0, LENGTH, 11), np.zeros(10, dtype=bool)
+    for opening, is_overlooked in ((0.01, False), (-0.01, True)):
+        assert (find_overlooked(stepping_shape, edges, loaded, np.full(10, opening)) == is_overlooked).all()
 
 
 BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -270,22 +291,23 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
                 assert getattr(computed, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
 
 
-def outermost_widths(name: str, face_beyond: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+def outermost_widths(
+    name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, elastic: bool = False
+) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
-    widths = (
-        np.diff(refine_columns(make_column_solver(SCALED_PRESSURES[name]), shape(face_beyond=face_beyond), 0.02).edges)
-        / HALF_WIDTH
-    )
+    request = shape(face_beyond=face_beyond, elastic=elastic)
+    widths = np.diff(refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02).edges) / HALF_WIDTH
     return float(widths[0]), float(widths[-1])
 
 
-def test_sharper_ends_have_narrower_columns() -> None:
+@pytest.mark.parametrize("elastic", [False, True])
+def test_sharper_ends_have_narrower_columns(*, elastic: bool) -> None:
     for width in outermost_widths("falls to the end"):
         assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
         assert 0.3 * MIN_END_COLUMN < outermost_widths(name)[1] <= MIN_END_COLUMN
     for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
-        widths = outermost_widths("falls to the end", face_beyond)
+        widths = outermost_widths("falls to the end", face_beyond, elastic=elastic)
         sharp = face_beyond.index(2.0)
         assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
         assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
@@ -458,17 +480,17 @@ def test_rough_contact_uses_second_threshold() -> None:
     assert coarse.laws == [None, None]
 
 
-@pytest.mark.parametrize("side", [0, 1])
-def test_pressure_at_corner_is_refined_on_both_sides(side: int) -> None:
+@pytest.mark.parametrize(("side", "half_width"), [(0, HALF_WIDTH), (1, HALF_WIDTH), (0, 0.25)])
+def test_pressure_at_corner_is_refined_on_both_sides(side: int, half_width: float) -> None:
     """The logarithm at a corner makes the peak of its half infinite, and the columns on both sides narrow."""
     corner = (6.3, LENGTH - 6.3)[side]
-    cornered_shape = replace(shape(), corners=(corner,))
+    cornered_shape = replace(shape(), corners=(corner,), half_width=half_width)
     result = refine_columns(make_column_solver(lambda x: 3 - 0.5 * np.log(np.abs(x - corner))), cornered_shape, 0.01)
     peaks = result.values["peak_pressure"]
     assert np.isinf(peaks[side])
     assert np.isfinite(peaks[1 - side])
     widths, distances = np.diff(result.edges), np.abs(result.edges - corner)
     outer_distances = np.maximum(distances[:-1], distances[1:])
-    is_near = outer_distances < HALF_WIDTH
-    bounds = np.maximum(MIN_END_COLUMN * HALF_WIDTH, CORNER_GROWTH * outer_distances)
+    is_near = outer_distances < half_width
+    bounds = np.maximum(MIN_END_COLUMN * half_width, CORNER_GROWTH * outer_distances)
     assert (widths <= bounds)[is_near].all()

@@ -129,6 +129,20 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
         assert getattr(variant, name) == pytest.approx(getattr(baseline, name), rel=1e-3, abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["forces", "shifting force", "moment"])
+def test_force_error_is_relative_to_largest_resultant(name: str) -> None:
+    """A solution that stops early has an error, which the tractions themselves and their places give."""
+    tractions = solve_friction(MOTIONS[name], "uniform", max_steps=1, other_units=True).tractions
+    motion, magnitude = scale_units(MOTIONS[name]), np.hypot(*tractions.traction) * (0.1 * LENGTH) ** 2
+    centres = 0.1 * LENGTH * (np.arange(26) - 12.5)
+    arm = np.abs(centres - 0.1 * LENGTH)[:, None] + np.abs(centres)  # spin and moment refer to x = 0.1
+    sizes = {"force_x": magnitude, "force_y": magnitude, "moment_z": arm * magnitude}
+    prescribed = {key: getattr(motion, key) for key in sizes if getattr(motion, key, None) is not None}
+    errors = [abs(tractions.resultants[key] - value) / sizes[key].sum() for key, value in prescribed.items()]
+    assert tractions.force_error == pytest.approx(max(errors), rel=1e-9)
+    assert tractions.force_error > 1e-6
+
+
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
 def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment refer to the middle at any position along the axis."""
