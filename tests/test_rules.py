@@ -1,10 +1,11 @@
-"""Rules of CONTRIBUTING.md: no long sequence of positional values, no constant bound twice, tests by module."""
+"""Rules of CONTRIBUTING.md: short positional sequences, constants bound once, no circular imports, tests by module."""
 
 from __future__ import annotations
 
 import ast
 from collections import Counter
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ MOST_POSITIONAL = 2  # positional parameters of a function with more parameters
 
 ROOT = Path(contactstudy.__file__).parent
 MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.py"))}
+STUBS = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.pyi"))}
 
 
 def violations(modules: dict[str, str]) -> list[str]:
@@ -83,6 +85,38 @@ def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     )
 
 
+def circle_of_imports(modules: dict[str, str], stubs: dict[str, str]) -> list[str]:
+    """Modules of a circle of imports, lazy imports and imports for types included; empty without a circle."""
+    texts = {module_name(path): text for path, text in modules.items()}
+    sources = {  # module of each name that a package imports on first use
+        f"{module_name(path)}.{entry.name}": f"{module_name(path)}.{node.module or entry.name}"
+        for path, text in stubs.items()
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.ImportFrom)
+        for entry in node.names
+    }
+    graph: dict[str, set[str]] = {}
+    for module, text in texts.items():
+        nodes = list(ast.walk(ast.parse(text)))
+        imports = {entry.name: entry.name for node in nodes if isinstance(node, ast.Import) for entry in node.names}
+        for node in nodes:
+            if isinstance(node, ast.ImportFrom):
+                imports |= {f"{node.module}.{entry.name}": str(node.module) for entry in node.names}
+        targets = {sources.get(name, name if name in texts else package) for name, package in imports.items()}
+        graph[module] = (targets & set(texts)) - {module}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def module_name(path: str) -> str:
+    """Dotted name of a module from its path within the package."""
+    parts = ("contactstudy", *Path(path).with_suffix("").parts)
+    return ".".join(part for part in parts if part != "__init__")
+
+
 def misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
     """Files `room/test_MODULE.py`, `room/test_MODULE_TOPIC.py` or `MODULE/test_TOPIC.py` without such a module."""
     stems = {name.removesuffix(".py") for name in modules}
@@ -99,6 +133,26 @@ def misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
 
 def test_package_follows_rules() -> None:
     assert not violations(MODULES)
+
+
+def test_modules_import_without_circles() -> None:
+    assert not circle_of_imports(MODULES, STUBS)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from contactstudy.room.first import size",
+        "def solve() -> None:\n    import contactstudy.room.first",
+        "if TYPE_CHECKING:\n    from contactstudy.room import first",
+        "from contactstudy.room import size",
+    ],
+)
+def test_circle_of_imports_is_detected(text: str) -> None:
+    modules = {"room/__init__.py": "", "room/first.py": "from contactstudy.room.second import edge"}
+    stubs = {"room/__init__.pyi": "from .first import size as size"}
+    names = {"contactstudy.room.first", "contactstudy.room.second"}
+    assert set(circle_of_imports(modules | {"room/second.py": text}, stubs)) == names
 
 
 def test_tests_mirror_modules() -> None:

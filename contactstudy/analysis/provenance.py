@@ -60,6 +60,12 @@ def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
     return _without_malformed(table) if name in (INPUTS_ATTRIBUTE, RUN_ATTRIBUTE) else table
 
 
+def study_title(study: Mapping[str, Any], name: str) -> str:
+    """Return name and description of a study; `name` is the default."""
+    title = str(study.get("name", name))
+    return f"{title}: {study['description']}" if study.get("description") else title
+
+
 def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
     """Table, with its nested tables, without entries of a foreign type."""
     foreign = {name for name, kind in ATTRIBUTE_TYPES.items() if name in table and not isinstance(table[name], kind)}

@@ -13,12 +13,11 @@ import xarray as xr
 
 from contactstudy.analysis import axial_pressure, in_plane, measure, positions, single_case
 from contactstudy.analysis.axes import axis_dimensions
-from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
+from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute, study_title
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import STRESSES, require, variable_of
 from contactstudy.checks import Array, FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.explorer.server import study_title
 from contactstudy.plots.style import AXIS_MEANINGS, Units, cap_field, near_singular, singular_ends
 from contactstudy.study import collect
 from contactstudy.study.folder import Folder

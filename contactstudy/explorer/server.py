@@ -9,7 +9,7 @@ import logging
 import secrets
 import socket
 from asyncio import wrap_future
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Sequence, Set
 from concurrent.futures import Future
 from importlib import import_module
 from importlib.util import find_spec
@@ -213,16 +213,12 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
 
 def _title(path: Path) -> str:
     """Name of the study for the browser's tab; the name of the folder if the study is unreadable."""
+    from contactstudy.analysis.provenance import study_title
+
     try:
         return study_title(json.loads((path / "study.json").read_text(encoding="utf-8")), path.resolve().name)
     except (OSError, ValueError, TypeError, AttributeError):
         return path.resolve().name
-
-
-def study_title(study: Mapping[str, Any], name: str) -> str:
-    """Return name and description of a study; `name` is the default."""
-    title = str(study.get("name", name))
-    return f"{title}: {study['description']}" if study.get("description") else title
 
 
 def _choose_port(port: int | None) -> int:

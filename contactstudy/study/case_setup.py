@@ -10,7 +10,6 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies import hertz
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import Material, contact_modulus
 from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
@@ -30,7 +29,7 @@ from contactstudy.study.parameters import (
     with_defaults,
     without_defaults,
 )
-from contactstudy.study.profile_tables import build_profile
+from contactstudy.study.profile_tables import Dimensions, build_profile
 
 SCALED_POSITIONS = ("field_x_over_a", "field_y_over_a", "field_z_over_a")  # positions over the half-width
 LUBRICANT_PAIRS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}  # parameters given in pairs
@@ -40,56 +39,6 @@ MOTION_PARAMETERS = {  # arguments of each motion's class, with the prefix `shif
     "shift": ("shift_x", "shift_y", "force_x", "force_y"),
     "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-
-
-class Dimensions(NamedTuple):
-    """Interdependent lengths of a case, metres, and the contact modulus, Pa."""
-
-    radius: float
-    body_length: float
-    roller_length: float
-    end_distance: float
-    half_width: float
-    modulus: float
-
-    @classmethod
-    def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
-        """Dimensions of a case; under a load, ``a`` and length depend on each other; at an approach, ``a`` is NaN."""
-        radius = checks.positive("radius", values["radius"], "metres")
-
-        def compute_dimensions(half_width: float) -> Dimensions:
-            distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
-            if "gamma" in values:
-                body_length = checks.positive("gamma", values["gamma"]) * radius
-                roller_length = body_length - 2 * distance
-            else:
-                roller_length = values["roller_length"]
-                body_length = roller_length + 2 * distance
-            return cls(radius, body_length, roller_length, distance, half_width=half_width, modulus=modulus)
-
-        if "max_pressure" in values:
-            pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
-            return compute_dimensions(hertz.line_half_width(pressure, radius, modulus))._check_lengths()
-        if "approach" in values:
-            return compute_dimensions(np.nan)._check_lengths()
-        load, dimensions = checks.positive("load", values["load"], "N"), compute_dimensions(0.0)._check_lengths()
-        for _ in range(500):
-            length, previous_half_width = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
-            if length <= 0:
-                break
-            pressure = hertz.line_max_pressure(load / length, radius, modulus)
-            dimensions = compute_dimensions(hertz.line_half_width(pressure, radius, modulus))
-            if abs(dimensions.half_width - previous_half_width) <= 1e-14 * dimensions.half_width:
-                return dimensions._check_lengths()
-        raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
-
-    def _check_lengths(self) -> Dimensions:
-        """Return the dimensions, or raise if a length is not positive."""
-        for name, length in (("roller length", self.roller_length), ("body length", self.body_length)):
-            if length <= 0:
-                hint = f"e = {self.end_distance:g} m" + (f", a = {self.half_width:g} m" if self.half_width > 0 else "")
-                raise InvalidInputError(name, length, "positive (metres)", hint)
-        return self
 
 
 class Setup(NamedTuple):

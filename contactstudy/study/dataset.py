@@ -80,9 +80,7 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
     >>> open_study(folder).pressure.dims, open_study(folder, cells="original").pressure.dims
     (('max_pressure', 'x_over_a', 'y_over_a'), ('max_pressure', 'x_index', 'y_index'))
     """
-    from contactstudy.study.xarray_backend import StudyBackend
-
-    return xr.open_dataset(Folder(folder).path, engine=StudyBackend, chunks=chunks, cells=cells)
+    return xr.open_dataset(Folder(folder).path, engine="contactstudy", chunks=chunks, cells=cells)
 
 
 def collect(folder: str | Path) -> xr.Dataset:

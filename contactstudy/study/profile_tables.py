@@ -13,19 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import format_quantity
+from contactstudy.bodies import hertz
 from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import check_drop, describe_profile, local_radius, unit_of
-
-if TYPE_CHECKING:
-    from contactstudy.study.case_setup import Dimensions
 
 Table = dict[str, Any]
 MAX_NESTING = 16  # Largest depth of profiles within profiles
@@ -56,6 +54,56 @@ def check_number(name: str, value: object) -> float:
     if 0 < abs(finite) < MIN_MAGNITUDE:
         raise InvalidInputError(name, value, f"0, or of a size from {MIN_MAGNITUDE:g} on", "units are SI")
     return round_digits(finite)
+
+
+class Dimensions(NamedTuple):
+    """Interdependent lengths of a case, metres, and the contact modulus, Pa."""
+
+    radius: float
+    body_length: float
+    roller_length: float
+    end_distance: float
+    half_width: float
+    modulus: float
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
+        """Dimensions of a case; under a load, ``a`` and length depend on each other; at an approach, ``a`` is NaN."""
+        radius = checks.positive("radius", values["radius"], "metres")
+
+        def compute_dimensions(half_width: float) -> Dimensions:
+            distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
+            if "gamma" in values:
+                body_length = checks.positive("gamma", values["gamma"]) * radius
+                roller_length = body_length - 2 * distance
+            else:
+                roller_length = values["roller_length"]
+                body_length = roller_length + 2 * distance
+            return cls(radius, body_length, roller_length, distance, half_width=half_width, modulus=modulus)
+
+        if "max_pressure" in values:
+            pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
+            return compute_dimensions(hertz.line_half_width(pressure, radius, modulus))._check_lengths()
+        if "approach" in values:
+            return compute_dimensions(np.nan)._check_lengths()
+        load, dimensions = checks.positive("load", values["load"], "N"), compute_dimensions(0.0)._check_lengths()
+        for _ in range(500):
+            length, previous_half_width = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
+            if length <= 0:
+                break
+            pressure = hertz.line_max_pressure(load / length, radius, modulus)
+            dimensions = compute_dimensions(hertz.line_half_width(pressure, radius, modulus))
+            if abs(dimensions.half_width - previous_half_width) <= 1e-14 * dimensions.half_width:
+                return dimensions._check_lengths()
+        raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
+
+    def _check_lengths(self) -> Dimensions:
+        """Return the dimensions, or raise if a length is not positive."""
+        for name, length in (("roller length", self.roller_length), ("body length", self.body_length)):
+            if length <= 0:
+                hint = f"e = {self.end_distance:g} m" + (f", a = {self.half_width:g} m" if self.half_width > 0 else "")
+                raise InvalidInputError(name, length, "positive (metres)", hint)
+        return self
 
 
 @dataclass(frozen=True)
