@@ -24,6 +24,7 @@ from contactstudy.arrays.variables import (
     ERROR_KIND,
     NOT_ESTIMATED,
     STRESSES,
+    describe,
     labels,
     name_array,
     require,
@@ -107,18 +108,18 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
     """Largest pressure and its position: refined if the contact is complete."""
-    largest_pressure = largest_sample(dataset, "pressure")
+    sample = largest_sample(dataset, "pressure")
+    largest_pressure = sample.rename({name: str(name).replace("largest_", "peak_") for name in sample})
     names = ("peak_pressure", "peak_pressure_error")
     if not {*names, "normal_load"} <= set(dataset.variables):
         return largest_pressure
     covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
     stored_peak = dataset[list(names)].reset_coords(drop=True)
     value = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
-    comment = "settled where the contact is whole, otherwise of the highest cell"
-    return largest_pressure.assign(
-        peak_pressure=name_array("peak_pressure", value).assign_attrs(comment=comment),
-        peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
-    )
+    comment = "refined if the cells contain the contact, otherwise the largest sample"
+    error = stored_peak["peak_pressure_error"].where(covers_contact)
+    refined_peak = name_array("peak_pressure", value).assign_attrs(comment=comment)
+    return describe(largest_pressure.assign(peak_pressure=refined_peak, peak_pressure_error=error))
 
 
 def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
@@ -274,7 +275,7 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     axial = axial_pressure(dataset)
     profile = axial if variable == "pressure" else measure(dataset, variable)
     if list(axis_dimensions(profile)) != ["x"]:
-        profile = largest_sample(dataset, variable, along="x")[f"peak_{variable}"]
+        profile = largest_sample(dataset, variable, along="x")[f"largest_{variable}"]
     profile = profile.compute()
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")

@@ -119,7 +119,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     Returns
     -------
     Dataset
-        ``peak_<variable>`` and its position ``peak_<variable>_x``, ``_y``, ``_z`` in metres, for the axes of the
+        ``largest_<variable>`` and its position ``largest_<variable>_x``, ``_y``, ``_z`` in metres, for the axes of the
         variable without `along`; along the parameters of a study too. NaN for cases without the variable.
 
     Raises
@@ -130,7 +130,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     Examples
     --------
     >>> stress = xr.DataArray([[1.0, 4.0], [3.0, 2.0]], dims=("x", "z"), coords={"x": [0, 1], "z": [0, 2]})
-    >>> float(largest_sample(xr.Dataset({"tresca": stress}), "tresca").peak_tresca_z)
+    >>> float(largest_sample(xr.Dataset({"tresca": stress}), "tresca").largest_tresca_z)
     2.0
     """
     array = measure(dataset, variable)
@@ -146,13 +146,13 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     array = without_coordinates(array, *axes.values())
     index = {dim: i.compute() for dim, i in array.fillna(-np.inf).argmax(list(axes.values())).items()}
     largest = array.isel(index)
-    values = {f"peak_{variable}": largest} | {
-        f"peak_{variable}_{axis}": points[axis].isel({dim: index[dim]}).where(largest.notnull())
+    values = {f"largest_{variable}": largest} | {
+        f"largest_{variable}_{axis}": points[axis].isel({dim: index[dim]}).where(largest.notnull())
         for axis, dim in axes.items()
     }
     base = variable_of(variable, array.attrs)
     result = xr.Dataset({name: name_array(name, value, base) for name, value in values.items()}).compute()
-    result[f"peak_{variable}"].attrs["comment"] = "largest sample; unbounded near a singular end"
+    result[f"largest_{variable}"].attrs["comment"] = "largest sample; unbounded near a singular end"
     return without_error(result, *values)
 
 

@@ -157,7 +157,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         Along `slice` = 1, 2, ...: `position` (m, its middle), `width` (m), `normal_load` (N), `axial_pressure` (Pa,
         largest between the cells; infinite at a singular end), these two with ``_error``, NaN unless a whole result
         has errors of its pressure; `half_width` (m, mean over its cells), `unloaded_gap` (m, mean). With stresses also
-        `peak_von_mises`, `peak_maximum_shear`, `peak_orthogonal_shear_amplitude` (Pa, largest sample) and their depths
+        `largest_von_mises`, `largest_maximum_shear`, `largest_orthogonal_shear_amplitude` (Pa) and their depths
         ``..._z`` (m); NaN for a slice without stress points. ``.to_dataframe()`` makes it a table.
 
     Raises
@@ -207,7 +207,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         position_tolerance = ROUNDING * (borders[-1] - borders[0])
         for name in SHEARS:
             sections = largest_sample(case, name, along="x")
-            stress = sections[f"peak_{name}"]
+            stress = sections[f"largest_{name}"]
             along = dimension_along(stress, "x")
             points = stress[along].values
             in_slice = (points >= borders[:-1, None] - position_tolerance) & (
@@ -215,7 +215,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
             )
             samples = stress.where(xr.DataArray(in_slice, dims=("slice", along)))
             index, has_samples = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
-            for variable in (f"peak_{name}", f"peak_{name}_z"):
+            for variable in (f"largest_{name}", f"largest_{name}_z"):
                 value = sections[variable].isel({along: index}).where(has_samples).reset_coords(drop=True)
                 result[variable] = value.assign_attrs(sections[variable].attrs)
     return describe(without_error(result, *averaged_names))

@@ -355,9 +355,12 @@ VARIABLES = {  # every one by subject, without names made by a rule
 
 RULES = {  # names made from other variables or coordinates; their unit, symbol and meaning fill the braces
     "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),
-    "peak_{name}_x": Variable(SCALAR, "m", "", "x of the largest {variable}"),
-    "peak_{name}_y": Variable(SCALAR, "m", "", "y of the largest {variable}"),
-    "peak_{name}_z": Variable(SCALAR, "m", "", "z of the largest {variable}"),
+    "largest_{name}": Variable(SCALAR, "{units}", "", "largest sample of the {variable}"),
+    **{
+        f"{prefix}_{{name}}_{axis}": Variable(SCALAR, "m", "", f"{axis} of the largest {{variable}}")
+        for prefix in ("peak", "largest")
+        for axis in "xyz"
+    },
     "{name}_error": Variable(SCALAR, "{units}", "", "estimated discretisation error of the {variable}"),
     "inner_{name}": Variable(SCALAR, "{units}", "", "{variable}, at the inner raceway"),
     "outer_{name}": Variable(SCALAR, "{units}", "", "{variable}, at the outer raceway"),

@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.analysis import edge_factors
 from contactstudy.arrays.engineering import unit_for
-from contactstudy.arrays.variables import variable_of
+from contactstudy.arrays.variables import NOT_ESTIMATED, variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import (
@@ -32,7 +32,7 @@ from contactstudy.explorer.cases import (
 from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.tables import NOT_ESTIMATED, OPEN_END, Summary, summary
+from contactstudy.report.tables import UNKNOWN_ERROR, Quantity, Summary, summary
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
@@ -170,7 +170,7 @@ class Page:
             if assessment.overall != "yes":
                 reason = html.escape(assessment.verdict)
                 verdict += f"<div class=soft style='white-space:normal;font-weight:400'>{reason}</div>"
-            numbers = {row.meaning: html.escape(_marked_text(row.text, row.remark)) for row in table.numbers}
+            numbers = {row.meaning: html.escape(_marked_text(row)) for row in table.numbers}
             self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
         return self._columns[index]
 
@@ -307,7 +307,7 @@ def _edge_factors(case: xr.Dataset, table: Summary) -> dict[str, str]:
     for suffix, end in (("first", "end I"), ("last", "end II")):
         name = f"end_pressure_{suffix}"
         singular = name in table and np.isinf(table[name].value)
-        text = "singular" if singular else f"{float(factors[f'end_over_middle_{suffix}']):.3f} ({NOT_ESTIMATED})"
+        text = "singular" if singular else f"{float(factors[f'end_over_middle_{suffix}']):.3f} ({UNKNOWN_ERROR})"
         texts[f"edge factor of the contact towards {end} (largest within a, over its middle)"] = text
     return texts
 
@@ -317,12 +317,12 @@ def _label(entry: xr.DataArray) -> str:
     return str(entry.attrs.get("long_name", entry.name))
 
 
-def _marked_text(text: str, remark: str) -> str:
+def _marked_text(row: Quantity) -> str:
     """Text of a number with the mark of its remark."""
-    if remark.startswith("singular"):
-        return "singular: no largest value"
-    if remark == OPEN_END or remark.startswith("p = K"):
-        return f"{text}: {remark}"
-    if remark.startswith("rounding"):
-        return f"{text} ({remark})"
-    return f"{text} ({NOT_ESTIMATED})" if NOT_ESTIMATED in remark else text
+    texts = {
+        "singular": "singular: no largest value",
+        **dict.fromkeys(("open", "law"), f"{row.text}: {row.remark}"),
+        "rounding": f"{row.text} ({row.remark})",
+        NOT_ESTIMATED: f"{row.text} ({UNKNOWN_ERROR})",
+    }
+    return texts.get(row.mark, row.text)

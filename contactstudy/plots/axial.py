@@ -96,7 +96,7 @@ def draw_section_maxima(
     if variable == "pressure":
         profile = axial_pressure(case)
     else:
-        profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
+        profile = largest_sample(case, variable, along="x")[f"largest_{variable}"]
     x = profile[dimension_along(profile, "x")].values
     values = np.where(near_singular(case, x), np.nan, profile.values)
     (line,) = ax.plot(x / unit.length + shift, values / unit.stress, **style)

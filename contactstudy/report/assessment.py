@@ -14,7 +14,7 @@ from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
-from contactstudy.report.tables import NOT_ESTIMATED, Quantity, Summary, summary
+from contactstudy.report.tables import UNKNOWN_ERROR, Quantity, Summary, summary
 
 YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if a number is missing
 LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
@@ -221,7 +221,7 @@ def _peak_stress(case: xr.Dataset, row: Quantity) -> Answer:
         if flat:
             return CAUTION, f"the stresses have one position along {' and '.join(flat)} only"
     if not np.isfinite(row.error) or np.isinf(row.value):
-        return CAUTION, row.remark or NOT_ESTIMATED
+        return CAUTION, row.remark or UNKNOWN_ERROR
     return YES, row.text
 
 

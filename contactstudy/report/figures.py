@@ -92,7 +92,7 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
         if check_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
             draw.append(partial(_draw_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
-        x = float(largest_sample(result, "von_mises")["peak_von_mises_x"])
+        x = float(largest_sample(result, "von_mises")["largest_von_mises_x"])
         section = f"across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}"
         draw += [partial(_draw_plane, "in the plane y = 0, along the roller", {"y": 0.0})]
         draw += [partial(_draw_plane, section, {"x": x}), _draw_section_maxima]

@@ -23,7 +23,7 @@ from contactstudy.plots.study_lines import figures_with_selections
 from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, case_pictures, encode_figure, side_view
 from contactstudy.report.sources import citations
-from contactstudy.report.tables import NOT_ESTIMATED, Summary, case_table, summary
+from contactstudy.report.tables import UNKNOWN_ERROR, Summary, case_table, summary
 from contactstudy.study import collect
 from contactstudy.study.files import load_result
 from contactstudy.study.folder import Folder
@@ -361,7 +361,7 @@ def _number(table: Summary, name: str) -> str:
     if np.isinf(number.value):
         return SINGULAR
     is_exact = name.endswith(("_x", "_z", "corner_slope", "corner_intensity"))
-    return number.text if is_exact or np.isfinite(number.error) else f"{number.text} ({NOT_ESTIMATED})"
+    return number.text if is_exact or np.isfinite(number.error) else f"{number.text} ({UNKNOWN_ERROR})"
 
 
 def _has_number(rows: list[Row], name: str) -> bool:

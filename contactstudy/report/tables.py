@@ -14,7 +14,7 @@ import xarray as xr
 from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import NUMBER, TEXT, format_quantity, format_with_error, html_table
-from contactstudy.arrays.variables import AXES, STRESSES, variable_of
+from contactstudy.arrays.variables import AXES, NOT_ESTIMATED, STRESSES, variable_of
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
@@ -24,9 +24,9 @@ from contactstudy.contact.solve import reference_depths
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import describe_profile
 
-NOT_ESTIMATED = "error not estimated"
+UNKNOWN_ERROR = f"error {NOT_ESTIMATED}"
 SINGULAR = "singular: unbounded towards a sharp end"
-CELL_MEAN = f"mean over the cell of largest pressure, {NOT_ESTIMATED}"
+CELL_MEAN = f"mean over the cell of largest pressure, {UNKNOWN_ERROR}"
 OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
 HERTZ = {
@@ -69,6 +69,7 @@ class Quantity(NamedTuple):
     units: str
     text: str  # value and error in engineers' units
     remark: str = ""  # why a value has no error or is unbounded; for a position, the nearest end
+    mark: str = ""  # kind of the remark: "not estimated", "singular", "open", "law" or "rounding"
 
 
 @dataclass(frozen=True)
@@ -144,7 +145,7 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
             factor, units = 1e9 * 1e-3**exponent, f"Pa m^{exponent:.3g}"
             text = format_with_error(value / factor, error / factor, f"GPa mm^{exponent:.3g}")
             remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
-            yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark)
+            yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark, mark="law")
         if f"end_load_{suffix}" in case:
             yield _row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
     for name in (*CORNER, *FILMS):
@@ -155,7 +156,7 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
         case = case.assign(contact_length=contact_edges(case)["contact_length"])
     if "contact_length" in case:
-        yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
+        yield _row(case, "contact_length", "length of the contact")
     yield from _peak_stress(case)
     yield from _edge_tension(case)
     for name, meaning in SCALARS.items():
@@ -163,27 +164,28 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
             # In a study's case a residual above zero shows that the value was prescribed.
             has_rounding_error = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
             is_given = _is_prescribed(case, name) is not None or has_rounding_error or name not in SOLVED
-            mark = None if f"{name}_error" in case and name != BALANCED else "" if is_given else NOT_ESTIMATED
-            yield _mark_rounding(case, _row(case, name, meaning, mark))
+            remark = "" if is_given and (name == BALANCED or f"{name}_error" not in case) else None
+            row = _row(case.drop_vars(f"{BALANCED}_error", errors="ignore"), name, meaning, remark)
+            yield _mark_rounding(case, row)
     yield from _slip(case)
 
 
 def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
     """Row of a scalar with its error, with the reason for a missing error, or with a remark instead."""
     value, error = float(case[name]), np.nan if remark is not None else float(case.get(f"{name}_error", np.nan))
-    units = variable_of(name, case[name].attrs).units
+    units, mark = variable_of(name, case[name].attrs).units, ""
     if remark is None:
         remark = str(case[f"{name}_error"].attrs.get("comment", "")) if f"{name}_error" in case else ""
         if np.isinf(value):
-            remark = SINGULAR if name.startswith("end_") else _describe_singularity(case)
+            remark, mark = SINGULAR if name.startswith("end_") else _describe_singularity(case), "singular"
         elif np.isnan(error):
-            remark = NOT_ESTIMATED
+            remark, mark = UNKNOWN_ERROR, NOT_ESTIMATED
         elif np.isinf(error):
-            remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
+            remark, mark = f"{UNKNOWN_ERROR}: {remark or 'two grids show no limit'}", NOT_ESTIMATED
         elif value == 0 and error == 0 and name.startswith("end_"):
-            remark = OPEN_END
+            remark, mark = OPEN_END, "open"
     text = format_with_error(value, error, units)
-    return Quantity(name, meaning, value, error, units, text=text, remark=remark)
+    return Quantity(name, meaning, value, error, units, text=text, remark=remark, mark=mark)
 
 
 def _describe_singularity(case: xr.Dataset) -> str:
@@ -198,7 +200,8 @@ def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
         case = case.assign(peak_pressure=float(case["pressure"].max()))
     if "peak_pressure" in case:
         is_refined = "peak_pressure_error" in case or np.isinf(float(case["peak_pressure"]))
-        yield _row(case, "peak_pressure", "largest pressure", None if is_refined else CELL_MEAN)
+        row = _row(case, "peak_pressure", "largest pressure")
+        yield row if is_refined else row._replace(remark=CELL_MEAN)
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
@@ -210,14 +213,14 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield _row(case.assign({name: np.inf}), name, meaning, _describe_singularity(case))
+        yield _row(case.assign({name: np.inf, f"{name}_error": np.nan}), name, meaning)
         return
     yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
         if f"{name}_{axis}" in case:
-            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}", "")
+            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}")
             end = _nearest_end(case, row.value) if axis == "x" else ""
-            yield row._replace(remark=", ".join(filter(None, (end, NOT_ESTIMATED))))
+            yield row._replace(remark=", ".join(filter(None, (end, row.remark))))
 
 
 def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
@@ -251,14 +254,14 @@ def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
     is_zero = np.isnan(row.error) or abs(row.value) <= row.error < rounding_limit
     if abs(row.value) < rounding_limit and is_zero and not _is_prescribed(case, row.name):
         remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
-        return row._replace(text=f"0 {row.units}", remark=remark)
+        return row._replace(text=f"0 {row.units}", remark=remark, mark="rounding")
     return row
 
 
 def _slip(case: xr.Dataset) -> Iterator[Quantity]:
     """Rows of stick and slip: sticking part of the contact, largest traction and slip."""
     if "sticking_part" in case:
-        yield _row(case, "sticking_part", "part of the contact that sticks", NOT_ESTIMATED)
+        yield _row(case, "sticking_part", "part of the contact that sticks")
     if "stick" not in case:
         return
     for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
@@ -267,8 +270,9 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
             value = float(((x**2 + y**2) ** 0.5).where(case["pressure"] > 0, 0.0).max())
             units = variable_of(f"{name}_y", y.attrs).units
             suffix = "" if units == "m" or name == "traction" else " per distance rolled"
-            text, remark = f"{format_quantity(value, units)}{suffix}", f"of a cell, {NOT_ESTIMATED}"
-            yield Quantity(f"largest_{name}", meaning, value, np.nan, units, text=text, remark=remark)
+            text, remark = f"{format_quantity(value, units)}{suffix}", f"of a cell, {UNKNOWN_ERROR}"
+            row = Quantity(f"largest_{name}", meaning, value, np.nan, units, text=text, remark=remark)
+            yield row._replace(mark=NOT_ESTIMATED)
 
 
 def _is_prescribed(case: xr.Dataset, name: str) -> Any:

@@ -381,7 +381,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                 raise error
             else:
                 message = "WorkerDied: a second worker process died of this case, or of a film of its group"
-                yield [Outcome(case, "failed", message) for case in tasks.return_task(task, died=True)]
+                yield [Outcome(case, "failed", message, stored=False) for case in tasks.return_task(task, died=True)]
             future.release()
     finally:
         with contextlib.suppress(Exception):

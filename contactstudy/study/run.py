@@ -379,7 +379,7 @@ def _collect_outcomes(results: TaskResults, template: Task, results_folder: Fold
             for outcomes in results:
                 for outcome in outcomes:
                     log.record(outcome)
-                    if outcome.message.startswith("WorkerDied"):
+                    if not outcome.stored:
                         batch = batch_of_case(template, outcome.case, outcome.status, outcome.message)
                         write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()

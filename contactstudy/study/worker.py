@@ -63,6 +63,7 @@ class Outcome(NamedTuple):
     case: PlannedCase
     status: str
     message: str = ""
+    stored: bool = True  # whether the worker stored the case
 
 
 @cache

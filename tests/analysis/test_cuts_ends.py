@@ -67,4 +67,4 @@ def test_part_of_a_contact_has_the_peaks_of_its_cells(flush: xr.Dataset) -> None
     assert np.isinf(float(results["edge_pressure_last"])) == singular
     assert np.isinf(float(analysis.edge_factors(flush)["end_over_middle_last"])) == singular
     assert results["edge_pressure_first"].attrs["error_kind"] == "not estimated"
-    assert analysis.largest_sample(flush, "pressure")["peak_pressure"].attrs["error_kind"] == "not estimated"
+    assert analysis.largest_sample(flush, "pressure")["largest_pressure"].attrs["error_kind"] == "not estimated"

@@ -24,38 +24,38 @@ from tests.stand_in_solver import FAILS
 def test_line_contact(strip_result, variable: str, value: float, depth: float) -> None:
     scale, peak_pressure = 2e-4, 1e9
     result = analysis.largest_sample(strip_result(scale, peak_pressure), variable, along="x")
-    assert result[f"peak_{variable}"].dims == ("x_field",)
-    assert result[f"peak_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
-    assert result[f"peak_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
-    overall_peak = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
-    assert float(overall_peak[f"peak_{variable}"]) == float(result[f"peak_{variable}"].max())
-    assert overall_peak[f"peak_{variable}_x"].attrs["units"] == "m"
+    assert result[f"largest_{variable}"].dims == ("x_field",)
+    assert result[f"largest_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
+    assert result[f"largest_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
+    overall_sample = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
+    assert float(overall_sample[f"largest_{variable}"]) == float(result[f"largest_{variable}"].max())
+    assert overall_sample[f"largest_{variable}_x"].attrs["units"] == "m"
 
 
 def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
     result = analysis.largest_sample(strip_result(friction=0.2))
     # The traction acts along +y on the body; the table is of the line contact with f = 0.2.
-    assert float(result["peak_von_mises"]) == pytest.approx(0.590, abs=2e-3)
-    assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
+    assert float(result["largest_von_mises"]) == pytest.approx(0.590, abs=2e-3)
+    assert float(result["largest_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
 
 
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
-        study_peaks = analysis.largest_sample(study_dataset, variable)
+        study_samples = analysis.largest_sample(study_dataset, variable)
         for e in (0.0, 2.0):
             selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
             case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), variable)
             for name, value in case_sample.items():
-                assert float(study_peaks[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-6), name
-        assert study_peaks.sel(friction=FAILS).to_array().isnull().all()
+                assert float(study_samples[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-6), name
+        assert study_samples.sel(friction=FAILS).to_array().isnull().all()
 
 
 def test_sections_of_a_study(study_dataset: xr.Dataset) -> None:
-    study_peaks = analysis.largest_sample(study_dataset, along="x")
+    study_samples = analysis.largest_sample(study_dataset, along="x")
     selected_case = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
     case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), along="x")
-    sections = study_peaks["peak_von_mises"].sel(selected_case).dropna("x_over_a")
-    assert np.array_equal(sections, case_sample["peak_von_mises"])
+    sections = study_samples["largest_von_mises"].sel(selected_case).dropna("x_over_a")
+    assert np.array_equal(sections, case_sample["largest_von_mises"])
 
 
 def test_unknown_measure(strip_result) -> None:
@@ -85,4 +85,4 @@ def test_principal_stresses_as_measures(strip_result) -> None:
     np.testing.assert_allclose(principal[0] - principal[2], analysis.measure(result, "tresca"), rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(sum(principal) / 3, analysis.measure(result, "hydrostatic"), rtol=1e-9, atol=1e-6)
     assert principal[0].attrs == {"units": "Pa", "long_name": "largest principal stress"}
-    assert float(analysis.largest_sample(result, "principal_stress_1")["peak_principal_stress_1"]) > 0
+    assert float(analysis.largest_sample(result, "principal_stress_1")["largest_principal_stress_1"]) > 0

@@ -38,20 +38,20 @@ def test_columns_of_the_line_contact(strip_result) -> None:
     assert table.index.tolist() == [1, 2, 3, 4]
     assert table["axial_pressure"].to_numpy() == pytest.approx(1, abs=1e-3)
     assert table["half_width"].to_numpy() == pytest.approx(1, abs=1e-9)
-    assert table["peak_von_mises"].to_numpy() == pytest.approx(0.5575, abs=1e-3)
-    assert table["peak_orthogonal_shear_amplitude_z"].to_numpy() == pytest.approx(0.5, abs=0.03)
+    assert table["largest_von_mises"].to_numpy() == pytest.approx(0.5575, abs=1e-3)
+    assert table["largest_orthogonal_shear_amplitude_z"].to_numpy() == pytest.approx(0.5, abs=0.03)
 
 
 def test_slices_without_stress_points(strip_result) -> None:
     table = analysis.slices(strip_result().isel(x_field=[0]), 4)
-    assert table["peak_von_mises"].isnull().values.tolist() == [False, True, True, True]
+    assert table["largest_von_mises"].isnull().values.tolist() == [False, True, True, True]
 
 
 def test_surfaces_only(study_dataset: xr.Dataset) -> None:
     study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
     surface = study_case.drop_vars([name for name in study_case.data_vars if "z_over_a" in study_case[name].dims])
     table = analysis.slices(surface, 5)
-    assert "peak_von_mises" not in table
+    assert "largest_von_mises" not in table
     assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(study_case)["resultant"]))
 
 
@@ -74,7 +74,7 @@ def test_slices_keep_order_at_single_depth(case_result: xr.Dataset) -> None:
     table = analysis.slices(case_result, 4)
     reversed_slices = analysis.slices(case_result.isel(x=slice(None, None, -1)), 4)
     assert reversed_slices["normal_load"].values == pytest.approx(table["normal_load"].values)
-    assert "peak_maximum_shear" not in analysis.slices(case_result.isel(z=1), 4)
+    assert "largest_maximum_shear" not in analysis.slices(case_result.isel(z=1), 4)
 
 
 STEEL = Material(210e9, 0.3)
@@ -100,12 +100,12 @@ CASES = {
 }
 
 
-QUICK = ("crowned",)
+DEFAULT_KINDS = ("crowned",)
 """Kinds of the default tier."""
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=() if kind in QUICK else pytest.mark.slow) for kind in CASES]
+    "kind", [pytest.param(kind, marks=() if kind in DEFAULT_KINDS else pytest.mark.slow) for kind in CASES]
 )
 def test_errors_against_finer_columns(kind: str) -> None:
     coarse_result = solve(CASES[kind], stresses=False, accuracy=0.02)

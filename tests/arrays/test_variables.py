@@ -419,3 +419,5 @@ def test_error_kinds() -> None:
     marked = without_error(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach")
     kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(marked).data_vars.items()}
     assert kinds == {"peak_pressure": ESTIMATED, "peak_pressure_error": None, "approach": NOT_ESTIMATED}
+    unknown_error = describe(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": np.nan}))
+    assert unknown_error["peak_pressure"].attrs[ERROR_KIND] == NOT_ESTIMATED

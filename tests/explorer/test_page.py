@@ -339,5 +339,8 @@ def test_unbounded_values_are_triangles() -> None:
 
 def test_mark_of_rounding() -> None:
     from contactstudy.explorer.page import _marked_text
+    from contactstudy.report.tables import Quantity
 
-    assert _marked_text("0 N", "rounding: below 1e-06 of it") == "0 N (rounding: below 1e-06 of it)"
+    row = Quantity("force_x", "force along the axis", 0.0, 0.0, "N", text="0 N", remark="below 1e-06", mark="rounding")
+    assert _marked_text(row) == "0 N (below 1e-06)"
+    assert _marked_text(row._replace(mark="")) == "0 N"

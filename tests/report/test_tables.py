@@ -28,6 +28,7 @@ def singular() -> xr.Dataset:
 def test_errors_of_settled_and_given_cells(case_result: xr.Dataset) -> None:
     for name in ("peak_pressure", "contact_length", "peak_von_mises_z"):
         assert "error not estimated" in summary(case_result)[name].remark, name
+        assert summary(case_result)[name].mark == "not estimated", name
     refined = case_result.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
     row = summary(refined)["peak_pressure"]
     assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")
@@ -65,6 +66,7 @@ def test_rounding(case_result: xr.Dataset) -> None:
     view = summary(motion_result)
     assert (view["force_x"].text, view["moment_z"].text, view["force_y"].text) == ("0 N", "0 N m", "2 N")
     assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
+    assert view["force_x"].mark == "rounding"
     assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
     # The text is 0 also for a prescribed force of zero.
     inputs_template = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
@@ -107,6 +109,8 @@ def test_singular_values(singular: xr.Dataset) -> None:
     for name in ("peak_pressure", "end_pressure_first", "peak_von_mises"):
         assert view[name].text == "∞", name
         assert view[name].remark.startswith("singular")
+        assert view[name].mark == "singular"
+    assert view["end_intensity_first"].mark == "law"
     assert "GPa mm^0.5" in view["end_intensity_first"].text
     assessment = assess(singular)
     assert assessment.overall == "with care"
