@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
+from contactstudy.arrays.peaks import section_maxima
 from contactstudy.arrays.variables import describe, labelled_cells
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -42,7 +43,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        `peak_pressure` (Pa), between the cells by parabolas, or at an end with more; `end_pressure_first` and
+        `peak_pressure` (Pa), between the cells across y, or at an end with more; `end_pressure_first` and
         `end_pressure_last` (Pa), the largest pressure across y extrapolated to the first and last end of the shape or
         the body, 0 without contact; `half_width_middle` (metres), in the middle between these ends (NaN without
         contact). All are values of the finer grid. Each has its ``<name>_error`` in the same unit; the peak error
@@ -163,11 +164,11 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
     edges = contact_edges(contact)
     pressure, grid = labelled_cells(f"{name}.pressure", contact["pressure"])
     first_column, last_column = _shape_columns(contact)
-    axial = np.array([_peak(pressure[column : column + 1]) for column in range(first_column, last_column + 1)])
+    axial = section_maxima(pressure[first_column : last_column + 1])
     mid_length = 0.5 * (grid.x[first_column] + grid.x[last_column])
     end_pressures = _end_pressure(axial[:FITTED_COLUMNS]), _end_pressure(axial[: -FITTED_COLUMNS - 1 : -1])
     return {
-        "peak_pressure": max(_peak(pressure), *end_pressures),
+        "peak_pressure": max(float(axial.max()), *end_pressures),
         **dict(zip(ENDS, end_pressures, strict=True)),
         "half_width_middle": float(np.interp(mid_length, grid.x, edges["half_width"].values)),
     }
@@ -180,17 +181,3 @@ def _end_pressure(columns: FloatArray) -> float:
     loaded = columns[: int((columns > 0).cumprod().sum())]
     polynomial = np.polynomial.Polynomial.fit(np.arange(0.5, loaded.size), loaded, loaded.size - 1)
     return max(0.0, float(polynomial(0.0)))
-
-
-def _peak(pressure: FloatArray) -> float:
-    """Largest pressure (x, y), between the cells by a parabola along each direction with loaded neighbours."""
-    index = np.unravel_index(int(pressure.argmax()), pressure.shape)
-    peak = sample = float(pressure[index])
-    for axis in (0, 1):
-        line = np.take(pressure, index[1 - axis], axis=1 - axis)
-        i = int(index[axis])
-        if 0 < i < line.size - 1 and line[i - 1] > 0 and line[i + 1] > 0:
-            slope, bend = 0.5 * (line[i + 1] - line[i - 1]), line[i + 1] - 2 * sample + line[i - 1]
-            if bend < 0:
-                peak -= float(0.5 * slope**2 / bend)
-    return peak

@@ -39,12 +39,7 @@ class UniformOperator:
     """Displacements of the top of one part of a body."""
 
     def __init__(
-        self,
-        material: Material,
-        extent: Extent,
-        grid: Grid,
-        responses: Sequence[Response],
-        ends: EndKernel | None,
+        self, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> None:
         self.extent, self.grid = extent, grid
         self._correction = None if ends is None else EndCorrection.on_grid(grid, ends)

@@ -62,10 +62,10 @@ def test_summary_with_separate_stress_points():
     )
     result = stress_summary(xr.Dataset({"von_mises": stress}))
     assert {name: float(value) for name, value in result.items()} == {
-        "peak_von_mises": 7,
-        "peak_von_mises_x": 2,
-        "peak_von_mises_y": 4,
-        "peak_von_mises_z": 6,
+        "largest_von_mises": 7,
+        "largest_von_mises_x": 2,
+        "largest_von_mises_y": 4,
+        "largest_von_mises_z": 6,
     }
 
 
@@ -76,7 +76,7 @@ def test_nan_field_has_no_peak():
 
 def test_without_stresses():
     assert not stress_summary(contact(PRESSURE_VALUES))
-    assert "peak_von_mises" not in case_numbers(contact(PRESSURE_VALUES))
+    assert "largest_von_mises" not in case_numbers(contact(PRESSURE_VALUES))
 
 
 def test_case_numbers_contain_result_scalars():
