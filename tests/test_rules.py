@@ -16,6 +16,8 @@ MOST_FIELDS = 4  # fields of a dataclass with positional arguments
 MOST_ARGUMENTS = 5  # positional arguments of a call
 MOST_PARAMETERS = 7  # parameters of a function
 MOST_POSITIONAL = 2  # positional parameters of a function with more parameters
+MOST_VALUES = 3  # values of a tuple that a function returns
+TUPLE_FUNCTIONS = ("__reduce__", "_difference_matrices")  # pickle prescribes the tuple; four matrices of one form
 
 ROOT = Path(contactstudy.__file__).parent
 MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.py"))}
@@ -58,6 +60,16 @@ def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[
                 yield f"{node.name} has more than {MOST_PARAMETERS} parameters and does not document them"
             if len(positional) > MOST_POSITIONAL:
                 yield f"{node.name} takes more than {MOST_POSITIONAL} of its many parameters by position"
+        if returned_values(node) > MOST_VALUES and node.name not in TUPLE_FUNCTIONS:
+            yield f"{node.name} returns a tuple of more than {MOST_VALUES} values"
+
+
+def returned_values(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Largest number of values of the tuples that a function returns by its annotation or its statements."""
+    returns = [entry.value for entry in ast.walk(node) if isinstance(entry, ast.Return)]
+    if isinstance(node.returns, ast.Subscript) and ast.unparse(node.returns.value) == "tuple":
+        returns.append(node.returns.slice)
+    return max((len(entry.elts) for entry in returns if isinstance(entry, ast.Tuple)), default=0)
 
 
 def bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
@@ -190,6 +202,9 @@ NUMPYDOC = '\n    """Solve.\n\n    Parameters\n    ----------\n    a, b, c, d, e
         ("TOLERANCE = 1e-2\nSTEPS, TOLERANCE = 3, 1e-3", 1),
         ("class A:\n    size: int = 1\n    size = 2", 1),
         ("class A:\n    def solve(self, a, b, c, d, e, f, g, h): ...", 2),
+        ("def solve() -> tuple[int, int, int, int]: ...", 1),
+        ("def solve() -> tuple[int, ...]:\n    return 1, 2, 3, 4", 1),
+        ("def solve() -> tuple[int, int, int]: ...", 0),
     ],
 )
 def test_rule_detects_violation(text: str, count: int) -> None:

@@ -103,6 +103,7 @@ class FatigueLimits:
 # Ilyushin's axes (axis, component): the squared length of a deviator's five coordinates is s:s
 DEVIATOR_AXES = block_diag(helmert(3), np.sqrt(2.0) * np.eye(3))
 TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # Indices of the six components in the tensor
+PLANE_TERMS = ("damage", "shear", "normal", *AXES)  # terms of Findley's sum, and components of the plane's normal
 
 
 def _label_criterion(name: str, damage: xr.DataArray, limit: float, **terms: xr.DataArray) -> xr.Dataset:
@@ -152,22 +153,23 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
     tensor, rolling_dim = stack_history(stress)
 
-    def criterion(history: Array) -> tuple[Array, ...]:
+    def criterion(history: Array) -> dict[str, Array]:
         centre, _ = enclosing_balls(history @ DEVIATOR_AXES.T)
         residual = centre @ np.linalg.pinv(DEVIATOR_AXES).T
         principal = np.linalg.eigvalsh((history - residual[:, None])[..., TENSOR])
         shear, hydrostatic = 0.5 * (principal[..., 2] - principal[..., 0]), history[..., :3].mean(axis=-1)
         damage = shear + limits.dang_van_slope * hydrostatic
         instant_index = damage.argmax(axis=1)[:, None]
-        terms = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (damage, shear, hydrostatic)]
-        return (*terms, instant_index[:, 0].astype(np.float64))
+        values = {"damage": damage, "shear": shear, "hydrostatic": hydrostatic}
+        terms = {name: np.take_along_axis(value, instant_index, axis=1)[:, 0] for name, value in values.items()}
+        return terms | {"instant": instant_index[:, 0].astype(np.float64)}
 
-    damage, shear, hydrostatic, instant = map_histories(criterion, stress, 4)
-    instant = instant.compute()
+    terms = map_histories(criterion, stress, ("damage", "shear", "hydrostatic", "instant"))
+    instant = terms.pop("instant").compute()
     loaded = instant < tensor.sizes[rolling_dim]
     index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
     y = positions(tensor, "y").isel({rolling_dim: index}).where(loaded)
-    return _label_criterion("dang_van", damage, limits.torsion, shear=shear, hydrostatic=hydrostatic, y=y)
+    return _label_criterion("dang_van", terms.pop("damage"), limits.torsion, **terms, y=y)
 
 
 def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -208,13 +210,12 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
     slope = limits.crossland_slope
 
-    def criterion(history: Array) -> tuple[Array, ...]:
+    def criterion(history: Array) -> dict[str, Array]:
         _, radius = enclosing_balls(history @ DEVIATOR_AXES.T)
-        return radius / np.sqrt(2.0), history[..., :3].mean(axis=-1).max(axis=1)
+        return {"shear": radius / np.sqrt(2.0), "hydrostatic": history[..., :3].mean(axis=-1).max(axis=1)}
 
-    shear, hydrostatic = map_histories(criterion, stress, 2)
-    damage = shear + slope * hydrostatic
-    return _label_criterion("crossland", damage, limits.torsion, shear=shear, hydrostatic=hydrostatic)
+    terms = map_histories(criterion, stress, ("shear", "hydrostatic"))
+    return _label_criterion("crossland", terms["shear"] + slope * terms["hydrostatic"], limits.torsion, **terms)
 
 
 # Number of planes of the first search, about 10 degrees apart on a hemisphere, and of shear directions per plane
@@ -274,7 +275,7 @@ def _rotate_frames(frames: Array, angle: Array) -> Array:
     return np.asarray(np.einsum("fkij,fnj->fkni", rotations, frames))
 
 
-def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
+def _worst_planes(history: Array, slope: float) -> dict[str, Array]:
     """Sum, shear amplitude, largest normal stress and components of the normal, on the worst plane of each history."""
     search_frames = _create_frames()
     shear_vectors, normal_vectors = _resolution_vectors(search_frames)
@@ -304,7 +305,8 @@ def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     worst = damage_terms[0].argmax(axis=1)[:, None]
     normal = np.take_along_axis(refined_frames[:, :, 0], worst[..., None], axis=1)[:, 0]
     normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
-    return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms), *normal.T)
+    terms = [np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms]
+    return dict(zip(PLANE_TERMS, [*terms, *normal.T], strict=True))
 
 
 def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -343,9 +345,8 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     1.0
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    damage, shear, normal, *normals = map_histories(
-        lambda history: _worst_planes(history, limits.findley_slope), stress, 6
-    )
+    terms = map_histories(lambda history: _worst_planes(history, limits.findley_slope), stress, PLANE_TERMS)
+    normals = [terms.pop(axis) for axis in AXES]
     plane = xr.concat(normals, "axis", coords="minimal", compat="override").transpose(..., "axis")
-    result = _label_criterion("findley", damage, limits.findley_limit, shear=shear, normal=normal, plane=plane)
+    result = _label_criterion("findley", terms.pop("damage"), limits.findley_limit, **terms, plane=plane)
     return describe(result.assign_coords(axis=list(AXES)))

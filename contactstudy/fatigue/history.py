@@ -7,7 +7,7 @@ LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 
 import numpy as np
@@ -44,8 +44,8 @@ def rolling_dimension(stress: xr.DataArray) -> str:
 
 
 def map_histories(
-    function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, outputs: int
-) -> tuple[xr.DataArray, ...]:
+    function: Callable[[Array], dict[str, Array]], stress: xr.Dataset, names: Sequence[str]
+) -> dict[str, xr.DataArray]:
     """Map the histories (point, instant, 6) of a result, the last instant unloaded, to two or more arrays (point)."""
     tensor, rolling_dim = stack_history(stress)
 
@@ -55,12 +55,13 @@ def map_histories(
         is_loaded = ~is_padding.all(axis=-1)
         # Positions that pad a shorter window are unloaded.
         points[is_padding] = 0.0
-        results = np.full((outputs, is_loaded.size), np.nan)
+        results = np.full((len(names), is_loaded.size), np.nan)
         if is_loaded.any():
-            results[:, is_loaded] = function(np.concatenate([points, np.zeros_like(points[:, :1])], axis=1)[is_loaded])
-        return tuple(results.reshape(outputs, *values.shape[:-2]))
+            terms = function(np.concatenate([points, np.zeros_like(points[:, :1])], axis=1)[is_loaded])
+            results[:, is_loaded] = [terms[name] for name in names]
+        return tuple(results.reshape(len(names), *values.shape[:-2]))
 
-    return reduce_dims(apply, [(tensor, [rolling_dim, COMPONENT])], outputs)
+    return dict(zip(names, reduce_dims(apply, [(tensor, [rolling_dim, COMPONENT])], len(names)), strict=True))
 
 
 def label_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
@@ -97,17 +98,18 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     0.25
     """
 
-    def magnitudes(history: Array) -> tuple[Array, ...]:
+    def magnitudes(history: Array) -> dict[str, Array]:
         weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
         magnitude = np.sqrt((history[:, :-1] ** 2) @ weights)
-        return np.maximum(magnitude[:, 0], magnitude[:, -1]), magnitude.max(axis=1)
+        return {"border": np.maximum(magnitude[:, 0], magnitude[:, -1]), "largest": magnitude.max(axis=1)}
 
     stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling_dim = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
     sorted_stress = stress.sortby(rolling_dim) if rolling_dim in stress.indexes else stress
-    border_stress, max_stress = map_histories(magnitudes, sorted_stress, 2)
-    return name_array("window_remainder", (border_stress / max_stress).where(max_stress != 0, 0.0))
+    stresses = map_histories(magnitudes, sorted_stress, ("border", "largest"))
+    remainder = (stresses["border"] / stresses["largest"]).where(stresses["largest"] != 0, 0.0)
+    return name_array("window_remainder", remainder)
 
 
 ROUNDING = 1e-10  # A point may lie outside a ball by this fraction of its radius
@@ -130,10 +132,8 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
     squares = squares[open_paths] / scale[open_paths, None] ** 2
     centres = paths[:, 0].copy()
     radii = np.sqrt(squares[:, 0])
-    max_support = points.shape[-1] + 1
-    support = np.zeros((open_paths.size, max_support), dtype=np.int64)
-    occupied = np.zeros((open_paths.size, max_support), dtype=bool)
-    occupied[:, 0] = True
+    support = np.full((open_paths.size, points.shape[-1] + 1), -1)  # indices of points, the occupied places first
+    support[:, 0] = 0
     for _ in range(MAX_STEPS):
         distance = np.sqrt(((paths - centres[:, None]) ** 2).sum(axis=-1) + squares)
         farthest = distance.argmax(axis=1)
@@ -142,28 +142,26 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
         centre[finished] += centres[enclosed] * scale[finished, None]
         radius[finished] = radii[enclosed] * scale[finished]
         remaining = ~enclosed
-        open_paths, paths, squares, support, occupied, farthest = (
-            values[remaining] for values in (open_paths, paths, squares, support, occupied, farthest)
+        open_paths, paths, squares, support, farthest = (
+            values[remaining] for values in (open_paths, paths, squares, support, farthest)
         )
         if not open_paths.size:
             return centre, radius
-        centres, radii, support, occupied = _add_point(paths, squares, support, occupied, farthest)
+        centres, radii, support = _add_point(paths, squares, support, farthest)
     raise ArithmeticError(f"no smallest ball after {MAX_STEPS} steps for {open_paths.size} paths")
 
 
-def _add_point(
-    path: Array, squares: Array, support: Array, occupied: Array, farthest: Array
-) -> tuple[Array, Array, Array, Array]:
+def _add_point(path: Array, squares: Array, support: Array, farthest: Array) -> tuple[Array, Array, Array]:
     """Smallest balls around their support and the farthest point, and the new support; `squares`: squared heights."""
     rows = np.arange(len(path))
     max_support = support.shape[1]
-    subset_size = int(occupied.sum(axis=1).max())
+    subset_size = int((support >= 0).sum(axis=1).max())
     new_point, new_height = path[rows, farthest], squares[rows, farthest]
     offsets = path[rows[:, None], support[:, :subset_size]] - new_point[:, None]
     gram = np.einsum("pia,pja->pij", offsets, offsets)
     rises = squares[rows[:, None], support[:, :subset_size]] - new_height[:, None]
     square = np.einsum("pii->pi", gram) + rises
-    is_present = occupied[:, :subset_size]
+    is_present = support[:, :subset_size] >= 0
     min_squared_radius = np.full(len(path), np.inf)
     centre, best_subset = np.zeros_like(new_point), np.zeros_like(is_present)
     for subset in product((False, True), repeat=subset_size):
@@ -192,10 +190,5 @@ def _add_point(
     is_support = np.zeros((len(path), max_support + 1), dtype=bool)
     is_support[:, :subset_size], is_support[:, max_support] = best_subset, True
     order = np.argsort(~is_support, axis=1, kind="stable")[:, :max_support]
-    candidates = np.concatenate([support, farthest[:, None]], axis=1)
-    return (
-        centre,
-        np.sqrt(min_squared_radius),
-        np.take_along_axis(candidates, order, axis=1),
-        np.take_along_axis(is_support, order, axis=1),
-    )
+    candidates = np.where(is_support, np.concatenate([support, farthest[:, None]], axis=1), -1)
+    return centre, np.sqrt(min_squared_radius), np.take_along_axis(candidates, order, axis=1)

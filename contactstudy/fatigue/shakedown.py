@@ -87,7 +87,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             hint = "residual stress along the axis is free only in a line contact, a result with one position along x"
             raise InvalidInputError("axial", True, f"False with {tensor.sizes[axial_dims[0]]} positions along x", hint)
 
-    def compute_yield_stresses(history: Array) -> tuple[Array, ...]:
+    def compute_yield_stresses(history: Array) -> dict[str, Array]:
         """Least yield stresses in shear without yield and with shakedown, and the residual stresses yy and xx."""
         u, v, remainder = to_ball_axes(history)
         if axial:
@@ -97,12 +97,12 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         else:
             centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + remainder))  # eq. (502)
             residual_xx = np.zeros(len(radius))
-        first_yield_stress = _min_yield_stress(history).max(axis=1)
-        return first_yield_stress, radius / np.sqrt(3.0), 0.5 * residual_xx - centre[:, 0], residual_xx
+        stresses = {"first_yield_stress": _min_yield_stress(history).max(axis=1), "shakedown_stress": radius / 3**0.5}
+        return stresses | {"residual_sigma_yy": 0.5 * residual_xx - centre[:, 0], "residual_sigma_xx": residual_xx}
 
-    results = map_histories(compute_yield_stresses, stress, 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
-    result = {name: label_points(name, array) for name, array in zip(names, results, strict=True)}
+    results = map_histories(compute_yield_stresses, stress, names)
+    result = {name: label_points(name, array) for name, array in results.items()}
     if not axial:
         del result["residual_sigma_xx"]
     return xr.Dataset(result)

@@ -46,13 +46,13 @@ def _plane_arrays(
 
 
 def plane_stress(
-    case: xr.Dataset, variable: str, position: dict[str, float], unit: Units
-) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-    """Positions and values (down, across) of a stress in a plane, limited near singular ends, and the limit in Pa."""
-    field, bound = cap_field(case, measure(case, variable))
-    plane = in_plane(case.assign({variable: field}), variables=variable, **position)[variable]
+    case: xr.Dataset, field: xr.DataArray, position: dict[str, float], unit: Units
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Positions and values (down, across) of a field in a plane."""
+    name = str(field.name)
+    plane = in_plane(case.assign({name: field}), variables=name, **position)[name]
     horizontal, vertical = (axis for axis in "xyz" if axis not in position)
-    return *_plane_arrays(plane, horizontal, vertical, unit), bound
+    return _plane_arrays(plane, horizontal, vertical, unit)
 
 
 def plot_stress_plane(
@@ -104,7 +104,8 @@ def plot_stress_plane(
     case = single_case(dataset)
     unit = units(case, si=si)
     plane_position = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
-    across, depths, values, bound = plane_stress(case, variable, plane_position, unit)
+    field, bound = cap_field(case, measure(case, variable))
+    across, depths, values = plane_stress(case, field, plane_position, unit)
     ((normal, position),) = plane_position.items()
     horizontal, vertical = (axis for axis in "xyz" if axis != normal)
     ax = new_axes(ax, (6.4, 3.2))

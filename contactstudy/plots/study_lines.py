@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import axial_pressure, dimension_along, single_case
+from contactstudy.analysis import axial_pressure, dimension_along, measure, single_case
 from contactstudy.arrays.variables import DERIVED, index_of, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
@@ -21,6 +21,7 @@ from contactstudy.plots.style import (
     MARKERS,
     SINGULAR_LABEL,
     SINGULAR_MARK,
+    cap_field,
     escape_dollars,
     fold_labels,
     fold_text,
@@ -405,8 +406,9 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
     from matplotlib.colors import PowerNorm
     from matplotlib.ticker import MaxNLocator
 
-    planes = [plane_stress(case, "von_mises", {"y": 0.0}, units(case, si=False)) for _, case in entries]
-    max_stress = max(float(np.nanmax(values[z <= depth][:, x <= distance])) for x, z, values, _ in planes)
+    fields = [(case, cap_field(case, measure(case, "von_mises"))[0]) for _, case in entries]
+    planes = [plane_stress(case, field, {"y": 0.0}, units(case, si=False)) for case, field in fields]
+    max_stress = max(float(np.nanmax(values[z <= depth][:, x <= distance])) for x, z, values in planes)
     levels = MaxNLocator(20).tick_values(0.0, max_stress)
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
     unit = units(entries[0][1], si=False)

@@ -78,6 +78,16 @@ class State(NamedTuple):
     converged: bool = True
 
 
+class Start(NamedTuple):
+    """Cells and worn profile before the first step."""
+
+    grids: Iterable[Grid]  # the first that contains the contact is used
+    distance: float = 0.0  # m
+    depth: FloatArray | None = None  # (x), m; None: not worn
+    error: float = 0.0  # of the depth, m
+    step: float | None = None  # length of the first step, m; None: from the rate of wear
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WearIntegrator:
     """Integrates the wear of a contact on given cells over the sliding distance."""
@@ -276,13 +286,11 @@ def wear_in(
     if not TOLERANCE_RANGE[0] <= tolerance <= TOLERANCE_RANGE[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCE_RANGE[0]:g} to {TOLERANCE_RANGE[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
-    distance_before, depth, grids, step, error = (
-        (0.0, None, _choose_grids(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
-    )
+    before = Start(_choose_grids(case, grid)) if after is None else _read_last_state(after, case, grid)
     all_steps = np.ndim(distance) == 0
     stops = checks.increasing("distance", in_si("distance", distance, "m"), "metres")
-    if stops[0] < distance_before or stops[-1] <= distance_before:
-        raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
+    if stops[0] < before.distance or stops[-1] <= before.distance:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {before.distance:g} m, where the wear begins")
 
     def start_on(cells: Grid) -> tuple[WearIntegrator, State]:
         integrator = WearIntegrator(
@@ -293,10 +301,10 @@ def wear_in(
             law=law,
             tolerance=tolerance,
         )
-        first_depth = np.zeros(cells.cells_x) if depth is None else depth
-        return integrator, integrator.initial_state(distance_before, first_depth, error)
+        first_depth = np.zeros(cells.cells_x) if before.depth is None else before.depth
+        return integrator, integrator.initial_state(before.distance, first_depth, before.error)
 
-    integrator, start = solve_in_first_window(grids, start_on)
+    integrator, start = solve_in_first_window(before.grids, start_on)
     if not start.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "a case with friction and slip")
     last_stop = float(stops[-1])
@@ -305,6 +313,7 @@ def wear_in(
         limit = f"at most {MAX_DEPTH:g} of the roller's radius, {case.roller.radius:g} m"
         allowed = f"such that the mean worn depth, {mean_depth:.3g} m, is {limit}"
         raise InvalidInputError("distance", last_stop, allowed, "coefficient is in 1/Pa, distances in metres")
+    step = before.step
     if step is None:
         # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
         contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
@@ -334,10 +343,8 @@ def _choose_grids(case: Case, grid: Grid | None) -> Iterable[Grid]:
     return (Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y),)
 
 
-def _read_last_state(
-    after: xr.Dataset, case: Case, grid: Grid | None
-) -> tuple[float, FloatArray, tuple[Grid], float, float]:
-    """Distance, depth, cells, next step and error of the depth of the last state of a result."""
+def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> Start:
+    """Start from the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
     check_solved_for(after, case, "after", only=WORN_ATTRIBUTES)
     if grid is not None:
@@ -346,7 +353,7 @@ def _read_last_state(
     cells = labelled_cells("after.pressure", last_state["pressure"], extent=case.body.extent)[1]
     depth = last_state["wear_depth"].values.astype(np.float64)
     error = float(last_state["wear_error"]) * float(depth.max())
-    return float(last_state["distance"]), depth, (cells,), float(last_state["next_step"]), error
+    return Start((cells,), float(last_state["distance"]), depth, error, step=float(last_state["next_step"]))
 
 
 def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatArray, max_steps: int) -> Iterator[State]:
