@@ -28,7 +28,7 @@ import contactstudy as cs
 from contactstudy.bodies import Body
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Task:
     """Roller and loads of the design: SI units."""
 

@@ -56,7 +56,7 @@ RELATIVE = ("load", "approach", "contact_area")
 """Over their values on the half-space. Pressure and stress are over p0, depths of stresses over a."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Indenter:
     """A rigid shape and its load: SI units.
 
@@ -106,7 +106,9 @@ def sphere(poisson: float = 0.3, accuracy: float = 0.004) -> Indenter:
     shape = cs.Roller(radius=RADIUS, length=4 * a, profile=cs.profiles.Sphere(RADIUS))
     load = 2 / 3 * np.pi * a**2 * PRESSURE
     x, z = tuple(np.linspace(-0.6, 1.0, 17)), tuple(np.linspace(0.05, 0.8, 16))
-    return Indenter(shape, material, load, a, 2 * a, 2 * a, x, z, accuracy)
+    return Indenter(
+        roller=shape, material=material, load=load, half_width=a, before=2 * a, reach=2 * a, x=x, z=z, accuracy=accuracy
+    )
 
 
 def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0.01) -> Indenter:
@@ -117,7 +119,17 @@ def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0
     load = length * a * np.pi / 2 * a * PRESSURE
     # The stress is largest under the peak where the edge radius begins, which is narrow.
     x, z = edge_radius + np.linspace(-0.2, 0.2, 33), np.linspace(0.0, 0.15, 16)
-    return Indenter(shape, material, load, a, 0.0, 0.5 * length * a, tuple(x), tuple(z), accuracy)
+    return Indenter(
+        roller=shape,
+        material=material,
+        load=load,
+        half_width=a,
+        before=0.0,
+        reach=0.5 * length * a,
+        x=tuple(x),
+        z=tuple(z),
+        accuracy=accuracy,
+    )
 
 
 class Cells(NamedTuple):

@@ -29,7 +29,7 @@ NEAR_END = 2.0
 """Distance from the free end, over a, within which its largest flow is looked for."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Task:
     """Roller, body and passes: SI units, positions over the half-width a."""
 

@@ -40,7 +40,7 @@ def line_contact(frictions: np.ndarray, poisson: float) -> xr.Dataset:
     y, z = np.linspace(-4.0, 4.0, 161), np.linspace(0.0, 1.5, 61)
     limits_by_model: dict[str, list[float]] = {name: [] for name in LINE_CONTACT}
     for friction in frictions:
-        stress = hertz_strip(y[:, None], z, 1.0, 1.0, poisson, float(friction))
+        stress = hertz_strip(y[:, None], z, 1.0, 1.0, poisson, friction=float(friction))
         fields = xr.Dataset({name: (("y", "z"), values) for name, values in stress.items()}, {"y": y, "z": z})
         fields["hertz_max_pressure"] = 1.0
         limits = {axial: shakedown_limit(fields, axial=axial) for axial in (False, True)}

@@ -29,7 +29,7 @@ WINDOW, CELLS_Y = 2.6, 64
 """Half-width of the window over the Hertz half-width, and its cells: sharp ends make a contact wide."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Task:
     """Roller, wear and loads: SI units."""
 

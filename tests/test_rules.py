@@ -147,6 +147,12 @@ def test_package_follows_rules() -> None:
     assert not violations(MODULES)
 
 
+@pytest.mark.parametrize("folder", ["benchmarks", "studies"])
+def test_programs_follow_rules(folder: str) -> None:
+    programs = Path(__file__).parent.parent / folder
+    assert not violations({str(path.relative_to(programs)): path.read_text() for path in programs.rglob("*.py")})
+
+
 def test_modules_import_without_circles() -> None:
     assert not circle_of_imports(MODULES, STUBS)
 

@@ -53,7 +53,7 @@ def hat_pairs(nodes: Array) -> list[Callable[[Array], Array]]:
     return [pair(index) for index in range((nodes.size + 1) // 2)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Flexibility:
     """Flexibility `[k, i, j]` between hats along x, in units where `2 G` is 1, and the integrals of the hats."""
 
@@ -69,7 +69,7 @@ def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
     nodes = graded_nodes(case.start, case.stop)
     margin = graded_nodes(0.0, case.start)[:-1] if case.start > 0 else np.zeros(0)
     edges = np.concatenate([margin, nodes, (case.length - margin)[::-1]])
-    x = Line(edges, resolution.order)
+    x = Line(edges=edges, order=resolution.order)
     pairs = hat_pairs(nodes)
     loads = np.array([x.load(hat) for hat in pairs])
     depth = resolution.mesh_z()
@@ -77,14 +77,20 @@ def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
     ks, values = [], []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
         deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), case.poisson)
+        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), case.poisson)
         for k in low + 0.5 * (high - low) * (node + 1):
             amplitudes = body.solve(float(k), [(hat, "z") for hat in pairs])
             top = 2 * np.stack([u[2] @ body.top for u in amplitudes])
             flexible = loads @ top.T
             ks.append(float(k))
             values.append(0.5 * (flexible + flexible.T))
-    return Flexibility(np.array(ks), np.array(values), _moments(np.ones_like, nodes), nodes, resolution)
+    return Flexibility(
+        k=np.array(ks),
+        values=np.array(values),
+        weights=_moments(np.ones_like, nodes),
+        nodes=nodes,
+        resolution=resolution,
+    )
 
 
 def between_strips(flexible: Flexibility, step: float, count: int) -> Array:

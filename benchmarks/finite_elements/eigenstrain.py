@@ -12,6 +12,7 @@ from skfem import LinearForm  # type: ignore[import-untyped]
 from benchmarks.finite_elements.harmonics import HarmonicBody, Line
 
 Array = NDArray[np.float64]
+ORDER, SMALLEST = 5, 0.02  # order of the elements, and width of the elements at the borders of the rectangle
 
 
 def graded_nodes(points: Array, smallest: float, largest: float) -> Array:
@@ -39,15 +40,12 @@ def residual_stress(
     poisson: float,
     x: Array,
     z: Array,
-    *,
-    order: int = 5,
-    smallest: float = 0.02,
 ) -> Array:
     """Stresses (6, x, z) over the shear modulus of eigenstrains (xx, yy, zz, xy, xz, yz) in one rectangle."""
     (x_low, x_high), (z_low, z_high) = rectangle
-    across = Line(graded_nodes(np.unique([0.0, x_low, x_high, length]), smallest, 0.3 * length), order)
-    depth = graded_nodes(np.unique([0.0, z_low, z_high, 2 * length]), smallest, 0.5 * length)
-    depth_line = Line(np.append(depth, 2 * length * np.array([1.5, 2, 3, 4, 6])), order)
+    across = Line(edges=graded_nodes(np.unique([0.0, x_low, x_high, length]), SMALLEST, 0.3 * length), order=ORDER)
+    depth = graded_nodes(np.unique([0.0, z_low, z_high, 2 * length]), SMALLEST, 0.5 * length)
+    depth_line = Line(edges=np.append(depth, 2 * length * np.array([1.5, 2, 3, 4, 6])), order=ORDER)
     body = HarmonicBody(across, depth_line, poisson)
     lam = 2 * poisson / (1 - 2 * poisson)
     e_xx, e_yy, e_zz, e_xy, e_xz, e_yz = eigenstrain

@@ -38,7 +38,7 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
     """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), up to a constant."""
     widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
     midpoints = x_edges[:-1] + 0.5 * widths
-    x = Line(np.sort(np.concatenate([x_edges, midpoints])), resolution.order)
+    x = Line(edges=np.sort(np.concatenate([x_edges, midpoints])), order=resolution.order)
     shapes = [(lambda at, low=low, high=high: 1.0 * ((at > low) & (at < high)), "z") for low, high in pairwise(x_edges)]
     loads = np.array([x.load(shape) for shape, _ in shapes])
     depth, n = resolution.mesh_z(), resolution.nodes
@@ -48,7 +48,7 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
     total = np.zeros((y.size**2, widths.size, widths.size))
     for low, high in pairwise(resolution.panels):
         deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), case.poisson)
+        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), case.poisson)
         k = low + 0.5 * (high - low) * (node + 1)
         # 2 G = E* (1 - nu); means over the displaced column, per length of the loaded one.
         tops = [np.stack([u[2] @ body.top for u in body.solve(float(wave), shapes)]) for wave in k]

@@ -41,7 +41,7 @@ def _mixed(u: Any, v: Any, _: Any) -> Any:
     return u * v.grad[0]
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Line:
     """One-dimensional elements of one order on given element edges; `mixed` differentiates the rows."""
 

@@ -38,7 +38,7 @@ YOUNG = 1000.0
 """Young's modulus: plastic strains are in proportion to its inverse."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Strip:
     """Mesh and steps.
 
@@ -141,7 +141,7 @@ class PlasticStrip:
         """Stress (4, element, point) of the elastic contact at this place along y."""
         y, z = np.asarray(self.basis.global_coordinates())
         distance = (y - position + 0.5 * self.strip.length) % self.strip.length - 0.5 * self.strip.length
-        values = hertz_strip(distance, z, 1.0, 1.0, self.case.poisson, self.case.friction)
+        values = hertz_strip(distance, z, 1.0, 1.0, self.case.poisson, friction=self.case.friction)
         return np.stack([values["sigma_xx"], values["sigma_yy"], values["sigma_zz"], values["tau_yz"]])
 
     def hooke(self, strain: Array) -> Array:

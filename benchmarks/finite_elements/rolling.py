@@ -33,7 +33,7 @@ from benchmarks.finite_elements.superpose import Resolution
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ColumnFlexibility:
     """Mean displacement of pairs of columns, in units where `2 G` is 1, per wavenumber: arrays `[k, of, under]`.
 
@@ -56,7 +56,7 @@ def flexibility(length: float, columns: int, poisson: float, resolution: Resolut
     edges = np.linspace(0.0, length, columns + 1)
     nodes_x = resolution.mesh_x(length)
     nodes_x = nodes_x[nodes_x < 0.9 * edges[1]]
-    x = Line(np.unique(np.concatenate([edges, nodes_x, length - nodes_x])), resolution.order)
+    x = Line(edges=np.unique(np.concatenate([edges, nodes_x, length - nodes_x])), order=resolution.order)
     step, half_columns = edges[1], columns // 2
 
     def column(low: float, mirrored: float) -> Array:
@@ -72,7 +72,7 @@ def flexibility(length: float, columns: int, poisson: float, resolution: Resolut
     ks = []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
         deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), poisson)
+        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), poisson)
         for k in low + 0.5 * (high - low) * (node + 1):
             loads = np.zeros((3, half_columns, 3, x.basis.N, body.z.basis.N))
             for component_load, component, forces, sign in zip(
@@ -122,7 +122,7 @@ def between_strips(flexible: ColumnFlexibility, name: str, width: float, count: 
     return total
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Rolled:
     """Steady tractions on columns of the first half and strips `[column, strip]`, and how far the last step moved."""
 
@@ -184,9 +184,17 @@ def roll(
         ahead = np.zeros_like(traction)
         ahead[:, :, :-1] = traction[:, :, 1:]
         surface_shift = 2 * matrix @ ahead.ravel()
-        solution = clarabel.DefaultSolver(upper, -surface_shift[unknown], constraints, limits, cones, settings).solve()
+        solution = clarabel.DefaultSolver(
+            upper, -surface_shift[unknown], constraints, limits, cones, settings=settings
+        ).solve()
         forces = np.zeros(2 * areas.size)
         forces[unknown] = solution.x
         change = float(np.abs(forces - traction.ravel()).max() / (friction * pressure.max()))
         traction, creepage = forces.reshape(traction.shape), -solution.z[0] / width
-    return Rolled(creepage, pressure.reshape(half_columns, -1), traction[0], traction[1], change)
+    return Rolled(
+        creepage=creepage,
+        pressure=pressure.reshape(half_columns, -1),
+        along_x=traction[0],
+        along_y=traction[1],
+        change=change,
+    )

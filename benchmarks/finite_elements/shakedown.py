@@ -120,5 +120,5 @@ def min_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     settings.verbose = False
     cones = [clarabel.ZeroConeT(equations.shape[0])] + [clarabel.SecondOrderConeT(5)] * rows.size
     zero_matrix = sparse.csc_array((cost.size, cost.size))
-    solution = clarabel.DefaultSolver(zero_matrix, cost, matrix, right, cones, settings).solve()
+    solution = clarabel.DefaultSolver(zero_matrix, cost, matrix, right, cones, settings=settings).solve()
     return float(solution.obj_val) / root

@@ -59,7 +59,7 @@ def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, boo
         data[name].attrs["units"] = "a"
     if case.symmetric:
         reference = positions["x"].index(case.length / 2)
-        u = displacement(harmonic, case, normal, tangential, positions["y"], reference)
+        u = displacement(harmonic, case, normal, tangential, positions["y"], reference=reference)
         attrs = {
             "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
             "units": "p0 a",
@@ -99,7 +99,7 @@ def write(path: Path) -> None:
         results: dict[Resolution, dict[str, xr.Dataset]] = {}
         for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
             start = time.perf_counter()
-            harmonic = harmonics(length, poisson, shapes, X[length], Z, resolution)
+            harmonic = harmonics(length, poisson, shapes, X[length], Z, resolution=resolution)
             results[resolution] = {n: evaluate(c, harmonic, list(shapes)) for n, c in cases.items()}
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():

@@ -33,7 +33,7 @@ def transform_ellipse(k: Array) -> Array:
     return np.asarray(np.pi * j1(k) / k)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Resolution:
     """Element order, growth of the elements into depth, depth, smallest element, quadrature in k."""
 
@@ -81,7 +81,9 @@ def harmonics(
 ) -> Harmonics:
     """Solve for every wavenumber; a shape is `g` and the direction of the load."""
     body = HarmonicBody(
-        Line(resolution.mesh_x(length), resolution.order), Line(resolution.mesh_z(), resolution.order), poisson
+        Line(edges=resolution.mesh_x(length), order=resolution.order),
+        Line(edges=resolution.mesh_z(), order=resolution.order),
+        poisson,
     )
     node = legendre.leggauss(resolution.nodes)[0]
     edges = np.array(resolution.panels, dtype=float)

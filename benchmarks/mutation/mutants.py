@@ -23,7 +23,7 @@ FACTOR = 1.1
 """Factor on a number with a decimal point inside a function."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Mutant:
     """A change of a source.
 
@@ -39,7 +39,7 @@ class Mutant:
         Lines of the statement around it, without those of statements within.
     where : str
         The function.
-    shown : str
+    description : str
         The line before and after.
     """
 
@@ -84,7 +84,16 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         if times[where + description] > 1:
             description += f"  (no. {times[where + description]})"
         statement = tuple(texts[line_number - 1].strip() for line_number in lines)
-        return Mutant(file, source, start, stop, text, statement, where, description)
+        return Mutant(
+            file=file,
+            source=source,
+            start=start,
+            stop=stop,
+            text=text,
+            lines=statement,
+            where=where,
+            description=description,
+        )
 
     for node, lines, where in _in_functions(ast.parse(source)):
         match node:

@@ -42,7 +42,7 @@ class RandomCase:
     case: Case | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comparison:
     """One value of one case, over the Hertz pressure (an intensity: over that and the root of the half-width; a load:
     over that of a half-width under the mean load per length)."""
@@ -157,19 +157,35 @@ def compare_values(random_case: RandomCase, accuracy: float, reference: float) -
     scale = case.hertz_max_pressure
     for value in VALUES:
         error = float(loose[f"{value}_error"]) / scale
-        yield Comparison(random_case, value, float(loose[value]) / scale, error, float(tight[value]) / scale)
+        yield Comparison(
+            random_case=random_case,
+            value=value,
+            loose=float(loose[value]) / scale,
+            error=error,
+            tight=float(tight[value]) / scale,
+        )
     mean_end_load = case.normal_load * case.hertz_half_width / case.contact_length
     for value in LOADS:
         error = float(loose[f"{value}_error"]) / mean_end_load
         yield Comparison(
-            random_case, value, float(loose[value]) / mean_end_load, error, float(tight[value]) / mean_end_load
+            random_case=random_case,
+            value=value,
+            loose=float(loose[value]) / mean_end_load,
+            error=error,
+            tight=float(tight[value]) / mean_end_load,
         )
     for value in INTENSITIES:
         power = float(loose.get(value.replace("intensity", "exponent"), 0.0))
         if value in loose and value in tight and case.roller.material is None and power:
             unit = scale * case.hertz_half_width**power
             error = float(loose[f"{value}_error"]) / unit
-            yield Comparison(random_case, value, float(loose[value]) / unit, error, float(tight[value]) / unit)
+            yield Comparison(
+                random_case=random_case,
+                value=value,
+                loose=float(loose[value]) / unit,
+                error=error,
+                tight=float(tight[value]) / unit,
+            )
 
 
 def _values(case: Case, accuracy: float) -> xr.Dataset:

@@ -36,8 +36,8 @@ def build_bodies(repeats: int, _: Report) -> Iterator[Row]:
     }
     seconds = medians(works, repeats, warm_up=False)
     yield Row(
-        "building the operator, 128 x 64, L = 8a",
-        show(seconds["cold"]),
+        work="building the operator, 128 x 64, L = 8a",
+        ours=show(seconds["cold"]),
         bar="1 s",
         met=seconds["cold"] <= 1.0,
         notes=f"with traction {show(seconds['friction'])}; reused by a second case in "
@@ -76,8 +76,8 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
     first_call = time_stresses(0.0, line, True)
     for name, seconds, bar in (("", first_call, 0.26), ("..., same cells", time_stresses(0.0, line, False), 0.11)):
         yield Row(
-            f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
-            show(seconds["half-space"]),
+            work=f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
+            ours=show(seconds["half-space"]),
             bar=f"{bar} s",
             met=seconds["half-space"] <= bar,
             notes="with friction " + show(sliding["half-space"]) if name else "",
@@ -93,7 +93,14 @@ def _against_half_space(work: str, seconds: dict[str, float]) -> Row:
     """Row on a body with ends, whose bar is twice the half-space's time."""
     ratio = seconds["finite-length"] / seconds["half-space"]
     seconds_finite, half_space_text = show(seconds["finite-length"]), "our half-space " + show(seconds["half-space"])
-    return Row(work, seconds_finite, half_space_text, f"{ratio:.2f}", "2x the half-space", ratio <= 2)
+    return Row(
+        work=work,
+        ours=seconds_finite,
+        peers=half_space_text,
+        ratio=f"{ratio:.2f}",
+        bar="2x the half-space",
+        met=ratio <= 2,
+    )
 
 
 def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
@@ -111,18 +118,22 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     per_application = growth * counts[first] / counts[last]
     times = ", ".join(f"{cells}: {show(contact[cells])} ({counts[cells]} applications)" for cells in LONG_CELLS)
     yield Row(
-        "contact 1000 x 48, L = 100a, built", show(contact[last]), bar="1.5 s", met=contact[last] <= 1.5, notes=times
+        work="contact 1000 x 48, L = 100a, built",
+        ours=show(contact[last]),
+        bar="1.5 s",
+        met=contact[last] <= 1.5,
+        notes=times,
     )
     yield Row(
-        "growth from 250 to 1000 cells, over linear",
-        f"{growth:.2f}",
+        work="growth from 250 to 1000 cells, over linear",
+        ours=f"{growth:.2f}",
         bar="1.2",
         met=growth <= 1.2,
         notes=f"per operator application {per_application:.2f}",
     )
     yield Row(
-        "building the operator, 1000 x 48, L = 100a",
-        show(build[last]),
+        work="building the operator, 1000 x 48, L = 100a",
+        ours=show(build[last]),
         notes=", ".join(f"{cells}: {show(build[cells])}" for cells in LONG_CELLS),
     )
     yield from memory(report)
@@ -138,8 +149,8 @@ def memory(report: Report) -> Iterator[Row]:
         return
     idle, contact, stress = (float(word) for word in process.stdout.split())
     yield Row(
-        "peak memory, 1000 x 48, L = 100a",
-        f"{stress:.0f} MB",
+        work="peak memory, 1000 x 48, L = 100a",
+        ours=f"{stress:.0f} MB",
         bar="2 GB",
         met=stress <= MEMORY_BAR,
         notes=f"process with its imports {idle:.0f} MB, after the contact {contact:.0f} MB, after stresses in y = 0",

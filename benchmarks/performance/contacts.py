@@ -97,13 +97,13 @@ def point_contact(repeats: int, report: Report) -> Iterator[Row]:
         iterations = float(contact_of(problem)["iterations"])
         fastest_peer = seconds.get("aspher")
         yield Row(
-            f"half-space point contact {cells}²",
-            show(our_seconds),
-            named(seconds),
-            ", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
-            "no slower than aspher",
-            None if fastest_peer is None else our_seconds <= fastest_peer,
-            f"{note}; {iterations:.0f} operator applications at the default 1e-6",
+            work=f"half-space point contact {cells}²",
+            ours=show(our_seconds),
+            peers=named(seconds),
+            ratio=", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
+            bar="no slower than aspher",
+            met=None if fastest_peer is None else our_seconds <= fastest_peer,
+            notes=f"{note}; {iterations:.0f} operator applications at the default 1e-6",
         )
 
 
@@ -114,13 +114,13 @@ def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
     report.add_remark("aspher has square cells only: no roller on 512 x 64")
     our_seconds = seconds.pop(OURS)
     yield Row(
-        "half-space roller 512 x 64",
-        show(our_seconds),
-        named(seconds),
-        ", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
-        "0.15 s",
-        our_seconds <= 0.15,
-        note,
+        work="half-space roller 512 x 64",
+        ours=show(our_seconds),
+        peers=named(seconds),
+        ratio=", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
+        bar="0.15 s",
+        met=our_seconds <= 0.15,
+        notes=note,
     )
 
 
@@ -141,13 +141,13 @@ def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
         }
         ratio = seconds["finite"] / seconds["built"]
         yield Row(
-            f"finite-length contact 512 x 64, built; {label}",
-            show(seconds["finite"]),
-            f"our half-space: {show(seconds['built'])} built, {show(seconds['cold'])} cold",
-            f"{ratio:.2f}, {seconds['finite'] / seconds['cold']:.2f}",
-            f"{bar:g}x the half-space",
-            ratio <= bar,
-            f"all at the default 1e-6; operator applications {count['f']}, half-space {count['h']}",
+            work=f"finite-length contact 512 x 64, built; {label}",
+            ours=show(seconds["finite"]),
+            peers=f"our half-space: {show(seconds['built'])} built, {show(seconds['cold'])} cold",
+            ratio=f"{ratio:.2f}, {seconds['finite'] / seconds['cold']:.2f}",
+            bar=f"{bar:g}x the half-space",
+            met=ratio <= bar,
+            notes=f"all at the default 1e-6; operator applications {count['f']}, half-space {count['h']}",
         )
 
 
@@ -168,4 +168,4 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
             if not bool(contact["converged"]):
                 report.add_remark(f"not converged: {name} at {tolerance:g}")
             counts.append(f"{name}: {int(contact['iterations'])}")
-        yield Row(f"operator applications at {tolerance:.0e}", ", ".join(counts), bar="aspher: 8 at 1e-6")
+        yield Row(work=f"operator applications at {tolerance:.0e}", ours=", ".join(counts), bar="aspher: 8 at 1e-6")

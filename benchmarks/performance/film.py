@@ -87,23 +87,23 @@ def films(_: int, report: Report) -> Iterator[Row]:
     if error > ACCURACY * 1e9 * float(film["central_film"]):
         report.add_remark("the least film has not converged to 2 % of the central film")
     yield Row(
-        f"film of a rigid roller, 10 mm, M = {MOES_LOAD:g}, L = {MOES_LUBRICANT:g}",
-        show(seconds),
-        f"half-space: {show(on_half_space)}",
-        f"{seconds / on_half_space:.2f}",
-        "20 s; 2",
-        seconds <= 20 and seconds <= 2 * on_half_space,
-        f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
+        work=f"film of a rigid roller, 10 mm, M = {MOES_LOAD:g}, L = {MOES_LUBRICANT:g}",
+        ours=show(seconds),
+        peers=f"half-space: {show(on_half_space)}",
+        ratio=f"{seconds / on_half_space:.2f}",
+        bar="20 s; 2",
+        met=seconds <= 20 and seconds <= 2 * on_half_space,
+        notes=f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
     )
     for factor in NEXT_SPEED:
         next_seconds, _film = timed_film(roller_case(factor * SPEED, free_ends=True), start=film)
         yield Row(
-            f"film at {factor:g} of the speed",
-            show(next_seconds),
-            f"first speed: {show(seconds)}",
-            f"{next_seconds / seconds:.2f}",
-            "0.25",
-            next_seconds <= 0.25 * seconds,
+            work=f"film at {factor:g} of the speed",
+            ours=show(next_seconds),
+            peers=f"first speed: {show(seconds)}",
+            ratio=f"{next_seconds / seconds:.2f}",
+            bar="0.25",
+            met=next_seconds <= 0.25 * seconds,
         )
     for speed in SPEEDS:
         cache.clear()
@@ -113,8 +113,8 @@ def films(_: int, report: Report) -> Iterator[Row]:
             for name in ("central_film", "least_film")
         )
         yield Row(
-            f"film of a crowned roller, 10 mm, VG 220 at 70 C, {speed:g} m/s",
-            show(seconds),
+            work=f"film of a crowned roller, 10 mm, VG 220 at 70 C, {speed:g} m/s",
+            ours=show(seconds),
             notes=f"M = {float(film['moes_load']):.1f}, L = {float(film['moes_lubricant']):.0f}, "
             f"central film {central}, least film {least}, "
             f"{int(film['newton_steps'])} Newton and {int(film['linear_steps'])} GMRES steps",

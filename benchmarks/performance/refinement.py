@@ -46,9 +46,9 @@ def refined_columns(repeats: int, report: Report) -> Iterator[Row]:
     if error > 0.01 * peak:
         report.add_remark("the refined peak has not converged to 1 %")
     yield Row(
-        "real roller, 10 mm, edge radius 0.2 mm, with stresses, nothing kept",
-        show(seconds["refined"]),
-        f"{CELLS} uniform cells per a: {show(seconds['uniform'])}",
-        f"{seconds['refined'] / seconds['uniform']:.2f}",
+        work="real roller, 10 mm, edge radius 0.2 mm, with stresses, nothing kept",
+        ours=show(seconds["refined"]),
+        peers=f"{CELLS} uniform cells per a: {show(seconds['uniform'])}",
+        ratio=f"{seconds['refined'] / seconds['uniform']:.2f}",
         notes=f"peak {peak / 1e9:.3f} +- {error / 1e9:.3f} GPa on {result.sizes['x']} columns",
     )

@@ -64,18 +64,18 @@ def steady_rolling(repeats: int, report: Report) -> Iterator[Row]:
             report.add_remark(f"not converged: rolling on {cells} cells")
         ratio = durations["free ends"] / durations["half-space"]
         yield Row(
-            f"steady rolling, {int((solution['pressure'] > 0).sum())} cells in contact, half-space",
-            show(durations["half-space"]),
-            f"CONTACT {published} s, published in 2016",
+            work=f"steady rolling, {int((solution['pressure'] > 0).sum())} cells in contact, half-space",
+            ours=show(durations["half-space"]),
+            peers=f"CONTACT {published} s, published in 2016",
             bar=f"{bar} s",
             met=durations["half-space"] <= bar,
             notes="without the pressure's own time",
         )
         yield Row(
-            "... between free ends",
-            show(durations["free ends"]),
-            f"our half-space {show(durations['half-space'])}",
-            f"{ratio:.2f}",
-            "2x the half-space",
-            ratio <= 2,
+            work="... between free ends",
+            ours=show(durations["free ends"]),
+            peers=f"our half-space {show(durations['half-space'])}",
+            ratio=f"{ratio:.2f}",
+            bar="2x the half-space",
+            met=ratio <= 2,
         )

@@ -28,7 +28,7 @@ class Nudge:
 nudge = Nudge()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Row:
     """One line of the table; `met` is None where the bar does not apply."""
 

@@ -164,8 +164,8 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
             # In a study's case a residual above zero shows that the value was prescribed.
             has_rounding_error = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
             is_given = _is_prescribed(case, name) is not None or has_rounding_error or name not in SOLVED
-            remark = "" if is_given and (name == BALANCED or f"{name}_error" not in case) else None
-            row = _row(case.drop_vars(f"{BALANCED}_error", errors="ignore"), name, meaning, remark)
+            input_remark = "" if is_given and (name == BALANCED or f"{name}_error" not in case) else None
+            row = _row(case.drop_vars(f"{BALANCED}_error", errors="ignore"), name, meaning, input_remark)
             yield _mark_rounding(case, row)
     yield from _slip(case)
 

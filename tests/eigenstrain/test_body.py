@@ -60,7 +60,7 @@ def test_stress_between_free_ends_matches_finite_elements(in_rectangle, x_range,
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
     computed = body.solve(strain).stresses(x, z)
-    expected = residual_stress(2.0, (x_range, z_range), COMPONENTS, 0.3, x, z) * TEST_MATERIAL.shear_modulus
+    expected = residual_stress(2.0, (x_range, z_range), COMPONENTS, 0.3, x=x, z=z) * TEST_MATERIAL.shear_modulus
     assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 

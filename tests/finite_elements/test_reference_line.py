@@ -18,7 +18,7 @@ RESOLUTION = superpose.Resolution(order=4, nodes=5, growth=2.0, panels=superpose
 def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
     """``E u_z`` at mid-length of the top less the mean along the line at each depth."""
     mesh = RESOLUTION.mesh_x(LENGTH), RESOLUTION.mesh_z()
-    body = HarmonicBody(*(Line(edges, RESOLUTION.order) for edges in mesh), POISSON)
+    body = HarmonicBody(*(Line(edges=edges, order=RESOLUTION.order) for edges in mesh), POISSON)
     node, weight = legendre.leggauss(8)
     mid_length = body.x.evaluate([0.5 * LENGTH])[0]
     along, below = body.x.evaluate(0.5 * LENGTH * (1 + node))[0], body.z.evaluate(depths)[0]

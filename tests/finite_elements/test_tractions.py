@@ -73,7 +73,7 @@ def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     mesh = MeshResolution(growth=2.0, smallest=0.02)
     depth = mesh.mesh_z()
     deep_enough = int(np.searchsorted(depth, 40 / lateral)) + 1
-    body = HarmonicBody(Line(mesh.mesh_x(LENGTH), 6), Line(depth[:deep_enough], 6), POISSON)
+    body = HarmonicBody(Line(edges=mesh.mesh_x(LENGTH), order=6), Line(edges=depth[:deep_enough], order=6), POISSON)
     amplitudes = body.solve(lateral, [(bump, NAMES[load]) for load in NAMES])
     for index, load in enumerate(NAMES):
         result = {
