@@ -185,7 +185,7 @@ def test_closed_output_pipe_is_no_error(study_file, tmp_path):
         read, write = os.pipe()
         os.close(read)
         with os.fdopen(write, "w") as nobody:
-            done = subprocess.run(
+            process = subprocess.run(
                 [sys.executable, "-m", "tests.study.fake_run", *arguments],
                 cwd=tmp_path,
                 env=os.environ | {"PYTHONPATH": str(ROOT), "CONTACTSTUDY_TEST_SECONDS": "0"},
@@ -194,9 +194,9 @@ def test_closed_output_pipe_is_no_error(study_file, tmp_path):
                 text=True,
                 check=False,
             )
-        assert done.returncode == 141, done.stderr
-        assert "Traceback" not in done.stderr
-        assert "BrokenPipe" not in done.stderr
+        assert process.returncode == 141, process.stderr
+        assert "Traceback" not in process.stderr
+        assert "BrokenPipe" not in process.stderr
     assert (tmp_path / "results" / "small" / "summary.nc").exists()
 
 

@@ -285,14 +285,14 @@ class _jumping_clock:  # noqa: N801
     """Replaces the clock of the study layer."""
 
     def __enter__(self) -> None:
-        class Jumping(datetime):
+        class JumpingClock(datetime):
             @classmethod
             def now(cls, tz=None):
                 return datetime.now(tz or UTC) + timedelta(days=rng.uniform(-3650, 3650))
 
         real = time.time
         modules = ("folder", "run", "worker", "files")
-        self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", Jumping) for name in modules]
+        self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", JumpingClock) for name in modules]
 
         def jumping() -> float:
             return real() + rng.uniform(-3e8, 3e8)

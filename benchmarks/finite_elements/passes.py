@@ -6,7 +6,7 @@ strain along y is zero. The bottom is fixed.
 Elements are quadrilaterals with eight nodes and two by two points of integration, which plastic flow without change of
 volume does not lock. The stress is the sum of the closed form of the elastic contact and the residual stress of the
 plastic strain; the plastic strain is integrated by the radial return with the tangent consistent with it (J. C. Simo,
-R. L. Taylor, Comput. Methods Appl. Mech. Engng 48 (1985) 101). Nothing is assumed of how it varies along y.
+R. L. Taylor, Comput. Methods Appl. Mech. Engng 48 (1985) 101). The plastic strain may vary along y in any way.
 
 Lengths are over the half-width, stresses over the peak pressure.
 """

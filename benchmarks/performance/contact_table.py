@@ -71,12 +71,12 @@ def main() -> None:
         # Imports and plans of transforms are made once per process.
         run_study(table(1), Path(folder) / "first", workers=0, progress=False)
         profile = cProfile.Profile(time.process_time)
-        start_seconds, on_clock = processor_seconds(), time.perf_counter()
+        start_seconds, start_time = processor_seconds(), time.perf_counter()
         if options.profile:
             profile.enable()
         report = run_study(table(options.sample), Path(folder) / "table", workers=options.workers, progress=False)
         profile.disable()
-        seconds, wall = processor_seconds() - start_seconds, time.perf_counter() - on_clock
+        seconds, wall = processor_seconds() - start_seconds, time.perf_counter() - start_time
         size = sum(path.stat().st_size for path in report.files)
     assert set(report.counts) == {"ok"}, report.counts
     cases, per_contact = len(report.plan), seconds / options.sample

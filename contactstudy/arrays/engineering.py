@@ -59,16 +59,18 @@ def format_with_error(value: float, error: float, units: str) -> str:
     return f"{round(value, decimals):.{places}f} ± {round(error, decimals):.{places}f} {unit}".rstrip()
 
 
-TEXT, NUMBER = "text-align:left", "text-align:right;white-space:nowrap"
+TEXT_STYLE, NUMBER_STYLE = "text-align:left", "text-align:right;white-space:nowrap"
 """Styles of a column of words, and of a column of numbers with units."""
 
 
-def html_table(subjects: Iterable[tuple[str, Iterable[Sequence[str]]]], styles: Sequence[str] = (TEXT, TEXT)) -> str:
+def html_table(
+    subjects: Iterable[tuple[str, Iterable[Sequence[str]]]], styles: Sequence[str] = (TEXT_STYLE,) * 2
+) -> str:
     """Table of texts, under one heading per subject."""
     lines = []
     for heading, rows in subjects:
         if heading:
-            lines.append(f"<tr><th colspan='{len(styles)}' style='{TEXT}'>{escape(heading)}</th></tr>")
+            lines.append(f"<tr><th colspan='{len(styles)}' style='{TEXT_STYLE}'>{escape(heading)}</th></tr>")
         for row in rows:
             cells = (f"<td style='{style}'>{escape(text)}</td>" for style, text in zip(styles, row, strict=True))
             lines.append(f"<tr>{''.join(cells)}</tr>")

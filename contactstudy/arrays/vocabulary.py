@@ -282,7 +282,7 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "viscosity_ratio": Variable(SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the middle section's film"),
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
     "traction_coefficient": Variable(SLIDE_ROLL_DIMS, "1", r"\mu", "traction over the load"),
-    "power_loss": Variable(SLIDE_ROLL_DIMS, "W", "", "power that sliding and rolling take"),
+    "power_loss": Variable(SLIDE_ROLL_DIMS, "W", "", "power loss of sliding and rolling"),
     "thermal_reduction": Variable(SLIDE_ROLL_DIMS, "1", r"\varphi_T", "film with heated inlet over isothermal film"),
     "rolling_force": Variable((), "N", "", "force along y on either surface from the film's pressure gradient"),
     "rolling_moment": Variable((), "N m", "t", "moment of the rolling force about the roller's axis"),

@@ -216,8 +216,8 @@ class ContactLaw:
             if outer_values.size:
                 allowed = f"in the table, from {low:g} to {high:g} {UNITS[name]}"
                 raise InvalidInputError(name, float(outer_values[0]), allowed)
-        pairs = delta.values, theta.values
-        return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)).assign(self.references)
+        position = delta.values, theta.values
+        return label_motion(delta, theta, self.motion(*position), self.errors(*position)).assign(self.references)
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
         """Approach and tilt under a load and a moment, with the stiffness.
@@ -239,8 +239,8 @@ class ContactLaw:
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
         delta, theta = xr.apply_ufunc(self.solve_position, loads, moments, **PAIR)
-        pairs = delta.values, theta.values
-        motion = label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)).assign(self.references)
+        position = delta.values, theta.values
+        motion = label_motion(delta, theta, self.motion(*position), self.errors(*position)).assign(self.references)
         return add_position_errors(motion)
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> ContactResponse:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import NUMBER, TEXT, format_quantity, format_with_error, html_table
+from contactstudy.arrays.engineering import NUMBER_STYLE, TEXT_STYLE, format_quantity, format_with_error, html_table
 from contactstudy.arrays.variables import AXES, NOT_ESTIMATED, STRESSES, variable_of
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
@@ -92,7 +92,7 @@ class Summary:
 
     def _repr_html_(self) -> str:
         rows = ((row.meaning, row.text, row.remark) for row in self.numbers)
-        return html_table([("", rows)], styles=(TEXT, NUMBER, TEXT))
+        return html_table([("", rows)], styles=(TEXT_STYLE, NUMBER_STYLE, TEXT_STYLE))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Table of the numbers in SI, by name."""

@@ -1,7 +1,7 @@
 """Engine of a run: this process, local worker processes, or a dask cluster, and the distribution of tasks over them.
 
-Every worker has one task. The death of a worker costs this task only: the cases of the task are solved again one by
-one, films with the other films of their group, and what a second worker dies of fails.
+Every worker has one task. After the death of a worker the cases of its task are solved again one by one, films with
+the other films of their group; a case, or a group of films, that ends a second worker fails.
 """
 
 from __future__ import annotations

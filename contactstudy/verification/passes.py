@@ -110,8 +110,8 @@ def pass_checks() -> Iterator[Check]:
     settling = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
     flow = residual_stress(contact, body, settling, passes=5)["plastic_flow"].values
     yield reference.compare("flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3)
-    flowing = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
-    flow = residual_stress(contact, body, flowing, passes=5)["plastic_flow"].values
+    yielding_material = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
+    flow = residual_stress(contact, body, yielding_material, passes=5)["plastic_flow"].values
     yield reference.compare("flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05)
 
 

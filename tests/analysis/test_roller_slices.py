@@ -81,11 +81,11 @@ STEEL = Material(210e9, 0.3)
 DESIGN = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
 
 
-def make_case(profile: profiles.Profile, length: float, body_length: float | None, **given: float) -> Case:
+def make_case(profile: profiles.Profile, length: float, body_length: float | None, **parameters: float) -> Case:
     """A roller of 5 mm radius on a body of a length, or on a half-space."""
     is_half_space = body_length is None
     body = HalfSpace(material=STEEL) if is_half_space else FiniteLengthSpace(length=body_length, material=STEEL)
-    return Case(body=body, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=1.5e9, **given)
+    return Case(body=body, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=1.5e9, **parameters)
 
 
 CASES = {

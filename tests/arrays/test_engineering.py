@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import math
 
-from contactstudy.arrays.engineering import TEXT, format_quantity, format_value, format_with_error, html_table, unit_for
+from contactstudy.arrays.engineering import (
+    TEXT_STYLE,
+    format_quantity,
+    format_value,
+    format_with_error,
+    html_table,
+    unit_for,
+)
 
 
 def test_units_of_a_size() -> None:
@@ -25,6 +32,6 @@ def test_written_numbers() -> None:
 
 
 def test_table_escapes_texts() -> None:
-    table = html_table([("", [("radius", "<5 mm")])], styles=(TEXT,) * 2)
+    table = html_table([("", [("radius", "<5 mm")])], styles=(TEXT_STYLE,) * 2)
     assert table.startswith("<table><tr><td style='text-align:left'>radius</td>")
     assert "&lt;5 mm" in table

@@ -96,8 +96,8 @@ def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None
 
 
 def test_yield_stress_over_depth() -> None:
-    over = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
-    material = ElasticPlastic(yield_stress=over)
+    yield_stress = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
+    material = ElasticPlastic(yield_stress=yield_stress)
     for material_variant in (material, replace(material, isotropic_hardening=1e9)):
         np.testing.assert_allclose(material_variant.yield_stress_at(np.array([0.5e-3])), 500e6)
     hardness = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
@@ -165,8 +165,8 @@ SCALARS: dict[str, tuple[Callable[[object], object], float, str, float]] = {
 }
 
 
-def case_with(**given) -> Case:
-    return Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), **given)
+def case_with(**parameters) -> Case:
+    return Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), **parameters)
 
 
 @pytest.mark.parametrize("name", SCALARS)

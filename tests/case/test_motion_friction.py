@@ -27,8 +27,8 @@ ANTISYMMETRIC_FRICTION = xr.DataArray([-0.1, 0.1], coords={"x": [0.0, LENGTH]}, 
 
 def create_case(friction: object, **arguments: object) -> Case:
     roller = Roller(radius=5e-3, length=LENGTH)
-    given = {"body": FiniteLengthSpace(length=LENGTH, material=STEEL), "roller": roller, "max_pressure": 1.5e9}
-    return Case(**(given | {"friction": friction} | arguments))  # type: ignore[arg-type]
+    parameters = {"body": FiniteLengthSpace(length=LENGTH, material=STEEL), "roller": roller, "max_pressure": 1.5e9}
+    return Case(**(parameters | {"friction": friction} | arguments))  # type: ignore[arg-type]
 
 
 def test_antisymmetric_friction() -> None:

@@ -167,27 +167,27 @@ def test_invalid_arguments_raise_error(half_space: HalfSpace, change: dict[str, 
 
 
 def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
-    good = sphere_gap(16)
+    gap = sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
-        solve_contact(half_space, good.where(good > 0.1), load=1.0)
+        solve_contact(half_space, gap.where(gap > 0.1), load=1.0)
     with pytest.raises(InvalidInputError, match=r"xarray\.DataArray"):
-        solve_contact(half_space, good.values, load=1.0)  # type: ignore[arg-type]
+        solve_contact(half_space, gap.values, load=1.0)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"gap.dims"):
-        solve_contact(half_space, good.rename(x="u"), load=1.0)
+        solve_contact(half_space, gap.rename(x="u"), load=1.0)
     with pytest.raises(InvalidInputError, match="uniformly spaced"):
-        solve_contact(half_space, good.assign_coords(x=good.x**3), load=1.0)
+        solve_contact(half_space, gap.assign_coords(x=gap.x**3), load=1.0)
     with pytest.raises(InvalidInputError, match="increasing"):
-        solve_contact(half_space, good.assign_coords(x=-good.x), load=1.0)
+        solve_contact(half_space, gap.assign_coords(x=-gap.x), load=1.0)
     with pytest.raises(InvalidInputError, match="at least two"):
-        solve_contact(half_space, good[:1], load=1.0)
+        solve_contact(half_space, gap[:1], load=1.0)
     with pytest.raises(InvalidInputError, match="non-empty"):
-        solve_contact(half_space, good[:0], load=1.0)
+        solve_contact(half_space, gap[:0], load=1.0)
     with pytest.raises(InvalidInputError, match="infinite everywhere"):
-        solve_contact(half_space, good * np.inf, load=1.0)
+        solve_contact(half_space, gap * np.inf, load=1.0)
     with pytest.raises(InvalidInputError, match="begin at the free end"):
-        solve_contact(short_body, good, load=1.0)
+        solve_contact(short_body, gap, load=1.0)
     with pytest.raises(InvalidInputError, match="end at the free end"):
-        solve_contact(short_body, good.assign_coords(x=good.x + 1.5), load=1.0)
+        solve_contact(short_body, gap.assign_coords(x=gap.x + 1.5), load=1.0)
 
 
 @pytest.mark.parametrize("load", [1.0, 1e45])

@@ -133,8 +133,8 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     compliance = flexibility(body, grid)
     shift = per_unit * start
     first, last = max(0, shift), min(grid.cells_x, shift + counter_grid.cells_x)
-    own_range = slice(first - shift, last - shift)
-    compliance[first:last, :, first:last] += flexibility(counter, counter_grid)[own_range, :, own_range]
+    counter_range = slice(first - shift, last - shift)
+    compliance[first:last, :, first:last] += flexibility(counter, counter_grid)[counter_range, :, counter_range]
     gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), y_range, grid.shape)
     gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
     computed = solve_contact(
@@ -142,10 +142,10 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     )
 
     # The lines to which the prescribed tilt refers turn under the load.
-    carried = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
+    transferred_load = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
     surface_pressures = (
         computed.pressure,
-        xr.DataArray(carried, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
+        xr.DataArray(transferred_load, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
     )
     slopes = [
         line_slope(variant, surface_pressure, variant.length)
@@ -296,8 +296,9 @@ def test_transfer_preserves_loads(start: float, length: float, cells: int):
     grid = Grid(x_range=(0.0, 1.7), y_range=(-1.0, 1.0), cells_x=cells, cells_y=2)
     facing = (grid.x > start) & (grid.x < start + length)
     load = np.random.default_rng(cells).random(grid.shape) * facing[:, None]
-    carried = counter.transfer_load(grid, load)
-    assert carried.sum() * counter.grid_on_body(grid).cell_area == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
+    transferred_load = counter.transfer_load(grid, load)
+    resultant = transferred_load.sum() * counter.grid_on_body(grid).cell_area
+    assert resultant == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
 
 
 def test_transfer_of_aligned_cells_is_identity():

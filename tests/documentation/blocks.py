@@ -41,6 +41,7 @@ from tests.documentation.pages import ROOT
 from tests.solved_case import solved_case
 from tests.stand_in_solver import solve_fake
 
+PUNCTUATION = ",:;"  # signs that follow a number
 WHOLE_STUDY = {"name", "base", "sweep"}
 """Keys that a TOML block of a whole study contains, unlike a part of a study."""
 
@@ -91,11 +92,8 @@ def compare_output(example: Example) -> None:
     assert len(expected_words) == len(printed), example.namespace["_printed"]
     for first, second in zip(expected_words, printed, strict=True):
         if first != second:
-            tail = ",:;"
-            assert float(first.strip(tail)) == pytest.approx(float(second.strip(tail)), rel=0.01, abs=2e-3), (
-                first,
-                second,
-            )
+            expected, computed = (float(word.strip(PUNCTUATION)) for word in (first, second))
+            assert expected == pytest.approx(computed, rel=0.01, abs=2e-3), (first, second)
 
 
 class ReasonedSkips(SkipParser):

@@ -15,11 +15,11 @@ def test_influence_of_selected_cells_matches_body() -> None:
         material=TEST_MATERIAL, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
     )
     along_x, along_z = np.array([0, 1, 4, 4]), np.array([0, 2, 1, 3])
-    few = np.random.default_rng(5).normal(size=(6, 4))
+    strains = np.random.default_rng(5).normal(size=(6, 4))
     complete = np.zeros((6, 5, 4))
-    complete[:, along_x, along_z] = few
+    complete[:, along_x, along_z] = strains
     expected = body.solve(complete).cell_averages()[:, along_x, along_z]
-    computed = cell_influence(body, along_x, along_z)(few)
+    computed = cell_influence(body, along_x, along_z)(strains)
     assert np.allclose(computed, expected, atol=1e-9)
 
 

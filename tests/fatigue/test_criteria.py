@@ -173,12 +173,12 @@ def test_window_remainder_decreases_with_the_window(strip_result) -> None:
 
 @pytest.mark.parametrize("criterion", CRITERIA)
 def test_bad_input_is_rejected(criterion, cycle, wave) -> None:
-    good = cycle(tau_yz=wave)
+    shear_cycle = cycle(tau_yz=wave)
     with pytest.raises(InvalidInputError, match="limits"):
-        criterion(good, 300e6)
+        criterion(shear_cycle, 300e6)
     with pytest.raises(InvalidInputError, match="sigma_xx is missing"):
-        criterion(good.drop_vars("sigma_xx"), LIMITS)
+        criterion(shear_cycle.drop_vars("sigma_xx"), LIMITS)
     with pytest.raises(InvalidInputError, match="exactly one dimension along y"):
-        criterion(good.isel(y=0), LIMITS)
+        criterion(shear_cycle.isel(y=0), LIMITS)
     with pytest.raises(InvalidInputError, match="at least 3"):
-        criterion(good.isel(y=[0, 1]), LIMITS)
+        criterion(shear_cycle.isel(y=[0, 1]), LIMITS)

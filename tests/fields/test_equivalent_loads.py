@@ -70,13 +70,13 @@ def test_equivalent_loads_of_solved_pressure(kind: str, distance: float) -> None
     body = bodies.get(kind) or FiniteLengthSpace(length=0.5e-3, material=steel, model=kind)
     roller = Roller(radius=6e-3, length=0.5e-3 - 2 * distance, profile=profiles.Lundberg(amplitude=0.2e-6))
     result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False, accuracy=0.1)
-    freed = kind not in ("mirror", "half")
+    has_end_correction = kind not in ("mirror", "half")
     for depths in ([0.0], [1e-5, 1e-4]):
         loads = equivalent_loads(body, result.pressure, 0.2, z=depths)
-        assert ("P_v1" in loads) is freed
+        assert ("P_v1" in loads) is has_end_correction
         assert all(np.isfinite(loads[name]).all() for name in loads.data_vars)
         exceeds = float(loads["P_h1"].max()) > float(result.pressure.max())
-        assert exceeds is freed
+        assert exceeds is has_end_correction
 
 
 def test_eccentric_loads_do_not_depend_on_pole_panel(

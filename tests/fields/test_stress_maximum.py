@@ -168,11 +168,11 @@ def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
 def test_given_cells_and_singular_ends_omit_error() -> None:
     body = HalfSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
-    given = solve(
+    on_grid = solve(
         case, Grid(x_range=(-A, 9 * A), y_range=(-1.5 * A, 1.5 * A), cells_x=20, cells_y=20), x=[0.0], y=[0.0], z=[A]
     )
-    assert np.isnan(float(given.peak_von_mises_error))
-    assert "given cells" in given.peak_von_mises_error.attrs["comment"]
+    assert np.isnan(float(on_grid.peak_von_mises_error))
+    assert "given cells" in on_grid.peak_von_mises_error.attrs["comment"]
     refined = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[A])
     assert np.isinf(float(refined.peak_von_mises))
     assert np.isnan(maximum_position(refined)).all()
@@ -211,13 +211,13 @@ def test_requested_points_do_not_increase_error() -> None:
     length = 1.2e-3
     body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
     case = Case(body=body, roller=Roller(radius=4e-3, length=length), max_pressure=1.8e9)
-    few = solve(case, accuracy=0.003, x=[0.5 * length], y=[0.0], z=[15e-6])
-    where = float(few.peak_von_mises_x)
+    single_point = solve(case, accuracy=0.003, x=[0.5 * length], y=[0.0], z=[15e-6])
+    where = float(single_point.peak_von_mises_x)
     depths = [0.0, 1e-7, 3e-7, 1e-6, 2e-6, 15e-6]
     additional = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
     assert float(additional.peak_von_mises) >= float(additional.von_mises.sel(z=0.0).max())
-    assert float(additional.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
-    assert float(additional.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
+    assert float(additional.peak_von_mises_error) == pytest.approx(float(single_point.peak_von_mises_error), rel=0.1)
+    assert float(additional.peak_von_mises) == pytest.approx(float(single_point.peak_von_mises), rel=3e-3)
 
 
 def test_friction_moves_stress_maximum_on_top() -> None:
@@ -289,7 +289,7 @@ def test_border_of_square_root_is_exact(position: float, row: int) -> None:
     pressure = np.sqrt(np.maximum(13.0**2 - centres**2, 0.0))
     border = centres[row] - position  # the traction's deficit is the root of the distance from here
     integral = np.maximum(np.arange(33) - 16 - border, 0.0) ** 1.5 / 24
-    integral[: row + 1] = 0.0  # the first sticking cell carries all up to its far face
+    integral[: row + 1] = 0.0  # the deficit of the border's cell is the integral to its far edge
     ratio = 1.0 - np.diff(integral)
     loads = {Load.NORMAL: TopLoad(pressure[None]), Load.ALONG_Y: TopLoad(0.3 * (pressure * ratio)[None])}
     inside = np.ones((1, 32), bool)

@@ -32,7 +32,7 @@ def test_coupled_contact_of_a_short_elastic_roller() -> None:
 
 
 def test_stresses_below_single_cell_contact() -> None:
-    """On 13 cells across a wide window a transform of no points was asked for."""
+    """A contact of one cell in a wide window has finite stresses below it."""
     body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
     case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)
     result = solve(case, Grid(x_range=(0.0, 0.001), y_range=(-1.1e-3, 1.1e-3), cells_x=16, cells_y=13), stresses=False)

@@ -248,9 +248,9 @@ def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]
         Points(1.0 + distances, distances, np.array([depth])),
         extent=EXTENTS["none"],
     )[2, :, :, 0]
-    carried = -float(steps @ field @ steps)
+    work = -float(steps @ field @ steps)
     total = float((cells * grid.widths[:, None]).sum() * grid.dy)
-    assert carried == pytest.approx(total, rel=2e-3)
+    assert work == pytest.approx(total, rel=2e-3)
 
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])

@@ -53,7 +53,7 @@ def test_chebyshev_interpolation_of_distant_loads(unit: float, middle: float) ->
         assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(
             1 / np.abs(positions / unit - load), abs=1e-6
         )
-    few, no_matrix = interpolation_points(positions[:4], 2.0 * unit, 1e-12)
+    points, no_matrix = interpolation_points(positions[:4], 2.0 * unit, 1e-12)
     assert no_matrix is None
-    assert few is not None
-    assert np.array_equal(few, positions[:4])
+    assert points is not None
+    assert np.array_equal(points, positions[:4])

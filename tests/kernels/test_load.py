@@ -168,9 +168,9 @@ def test_displacements_inside_match_surface_kernel(load: Load):
 
 
 @pytest.mark.parametrize("load", list(Load))
-@pytest.mark.parametrize("at", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
-def test_corner_functions_are_continuous(load: Load, at: tuple[float, float]):
-    corner, (x, y) = DISPLACEMENT_CORNERS[load], at
+@pytest.mark.parametrize("offset", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
+def test_corner_functions_are_continuous(load: Load, offset: tuple[float, float]):
+    corner, (x, y) = DISPLACEMENT_CORNERS[load], offset
     computed = corner(np.array([x]), np.array([y]), 0.0, NU)
     adjacent = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
     np.testing.assert_allclose(computed, adjacent, atol=1e-7)

@@ -115,8 +115,8 @@ def test_wavenumbers_scale_with_unit(length: float) -> None:
             assert scaled_system.scale == pytest.approx(system.scale)
             assert system.depth[-1] > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
             spectrum = np.ones((modes.wavenumbers.size, 1), np.complex128)
-            given = {"loads": (Load.NORMAL,), "shortest": shortest, "resolution": Resolution()}
-            reached = abs(system.auxiliary_loads(spectrum, **given).depth[-1])
+            settings = {"loads": (Load.NORMAL,), "shortest": shortest, "resolution": Resolution()}
+            reached = abs(system.auxiliary_loads(spectrum, **settings).depth[-1])
             assert reached > 0.5 * max(Resolution().ray_reach / shortest, 4 * lateral)
 
 

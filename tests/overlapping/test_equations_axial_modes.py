@@ -46,13 +46,13 @@ def test_cell_integrals_match_waves(load: Load, length: float) -> None:
     edges = np.array([0.0, 0.4, 1.7, 3.0])
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
         computed = modes.cell_integrals(load, edges)
-        few = np.abs(modes.wavenumbers) < 20
-        weights_of = np.abs(modes.load_weights)[few]  # near 0 the integrals lose as many digits as the weights
+        is_low = np.abs(modes.wavenumbers) < 20
+        weights_of = np.abs(modes.load_weights)[is_low]  # near 0 the integrals lose as many digits as the weights
         for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             positions = 0.5 * (high + low) + 0.5 * (high - low) * nodes
             expected = 0.5 * (high - low) * modes.wave(load, positions) @ weights
-            np.testing.assert_allclose(weights_of * computed[few, cell], weights_of * expected[few], atol=1e-9)
+            np.testing.assert_allclose(weights_of * computed[is_low, cell], weights_of * expected[is_low], atol=1e-9)
 
 
 def test_shortest_distance_bounds_wavenumbers() -> None:

@@ -110,20 +110,20 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
     computed = evaluate_beside_end(modes, end_field._stress_of_face_load)(faces, Z)
     kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
-    freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
+    face_stress = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
         # Each half-space has a separate load; the opposite load's normal stress reaches the face, its shear remains.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
         single_mirror = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
         assert evaluate_beside_end(single_mirror, end_field._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(
-            freed
+            face_stress
         )
-        assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
+        assert np.abs(np.real(applied) - face_stress).max() > 1e-3 * np.abs(face_stress).max()
     else:
         assert np.abs(computed[3:5]).max() < 1e-12 * np.abs(computed).max()
-    assert computed[0, 0] == pytest.approx(freed)
+    assert computed[0, 0] == pytest.approx(face_stress)
     if modes.parity:
-        assert computed[0, 1] == pytest.approx(modes.parity * freed)
+        assert computed[0, 1] == pytest.approx(modes.parity * face_stress)
     # For cosines along z the top has neither shear nor a normal displacement.
     real, top = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
     stress, displacement = (

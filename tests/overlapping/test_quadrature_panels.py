@@ -66,6 +66,6 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
         assert positions.max() <= unit * 3.0
     # The interpolation never has more positions than the original.
     for count in range(2, 160):
-        few = np.linspace(0.0, 3.0, count)
-        variant = graded_interpolation(unit * few, unit * length)
+        nodes = np.linspace(0.0, 3.0, count)
+        variant = graded_interpolation(unit * nodes, unit * length)
         assert variant is None or variant[0].size < count

@@ -47,7 +47,7 @@ def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
 
 @pytest.fixture
 def lines_of() -> Callable[[matplotlib.axes.Axes], list[matplotlib.lines.Line2D]]:
-    """Lines of axes without the ends of error bars, which matplotlib keeps among them."""
+    """Lines of axes without the ends of error bars, which matplotlib stores in the same list."""
     return lambda ax: [line for line in ax.lines if line.get_marker() != "_"]
 
 

@@ -30,8 +30,8 @@ def test_levels_cover_the_stress_of_the_plane(case_result):
 @pytest.mark.parametrize("x", [1e-4, 4e-4])
 def test_largest_stress_is_marked_with_its_place(case_result, assert_nothing_clipped, x, y, off_plane):
     a = float(case_result["hertz_half_width"])
-    place = {"peak_von_mises_x": x, "peak_von_mises_y": y * a, "peak_von_mises_z": 2e-5}
-    case = case_result.assign(place | {"peak_von_mises": 0.9 * 1.5e9})
+    peak_position = {"peak_von_mises_x": x, "peak_von_mises_y": y * a, "peak_von_mises_z": 2e-5}
+    case = case_result.assign(peak_position | {"peak_von_mises": 0.9 * 1.5e9})
     ax = plots.plot_stress_plane(case)
     (label,) = ax.texts
     assert label.get_text() == f"0.9{off_plane}"

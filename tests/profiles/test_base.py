@@ -82,7 +82,7 @@ def test_user_profile_needs_only_a_drop() -> None:
 
 
 @pytest.mark.parametrize(
-    ("returned", "message"),
+    ("drop", "message"),
     [
         (lambda x: 0.0, "it returned float64 of shape ()"),
         (lambda x: np.zeros(7), "of shape (7,)"),
@@ -94,10 +94,10 @@ def test_user_profile_needs_only_a_drop() -> None:
         (lambda x: np.full(x.shape, np.inf), "finite but at the very ends"),
     ],
 )
-def test_invalid_drops_of_a_user_profile_are_rejected(returned, message: str) -> None:
+def test_invalid_drops_of_a_user_profile_are_rejected(drop, message: str) -> None:
     class UserProfile:
         def drop(self, x, length):
-            return returned(x)
+            return drop(x)
 
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())

@@ -191,9 +191,9 @@ def test_quarter_space_is_softer_at_edge(near_an_edge):
             at_equal_approach[f"{name}_error"].sel(e_over_a=0.0)
         )
     assert float(at_equal_approach["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
-    over = result["von_mises"].sel(e_over_a=0.0) / result["von_mises"].sel(e_over_a=np.inf)
-    assert float(over.sel(indenter="sphere", condition="load")) == pytest.approx(1.49, abs=0.01)
-    assert float(over.sel(indenter="cylinder", condition="load")) < 0.95
+    stress_ratio = result["von_mises"].sel(e_over_a=0.0) / result["von_mises"].sel(e_over_a=np.inf)
+    assert float(stress_ratio.sel(indenter="sphere", condition="load")) == pytest.approx(1.49, abs=0.01)
+    assert float(stress_ratio.sel(indenter="cylinder", condition="load")) < 0.95
     assert float(result["end_traction_residual"].max()) < 1e-4
 
 
@@ -240,7 +240,7 @@ def test_worn_profile_is_flat_at_design_load():
 
 def test_rolling_script_draws_four_studies(tmp_path):
     module = script("rolling")
-    fewer = {
+    reduced_sweeps = {
         "traction_curve": {"longitudinal_creepage": [0.0, 2e-3], "roller_length": [0.26e-3]},
         "axial_slip": {"e_over_a": [0.0, 1.0]},
         "spin": {"spin": [0.0, 4.0], "roller_length": [0.26e-3]},
@@ -259,7 +259,7 @@ def test_rolling_script_draws_four_studies(tmp_path):
         small_study = replace(
             study,
             base=parameters,
-            sweep={**study.sweep, **fewer[name]},
+            sweep={**study.sweep, **reduced_sweeps[name]},
         )
         run_study(small_study, tmp_path / name, workers=0, progress=False)
         studies[name] = open_study(tmp_path / name)

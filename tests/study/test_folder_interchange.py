@@ -48,9 +48,9 @@ def test_batch_is_readable_without_hdf5_library(files):
 @pytest.mark.system
 def test_cf_checker_finds_no_errors(files):
     checker = Path(sys.executable).with_name("compliance-checker")
-    done = subprocess.run([checker, "--test=cf:1.11", *files], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.count("All tests passed!") == len(files), done.stdout
+    process = subprocess.run([checker, "--test=cf:1.11", *files], capture_output=True, text=True, check=False)
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert process.stdout.count("All tests passed!") == len(files), process.stdout
 
 
 def test_batch_follows_cf_rules(files):

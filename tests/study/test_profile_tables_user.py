@@ -45,9 +45,9 @@ def identity(profile: object) -> str:
 
 def test_user_profiles_differ_by_content() -> None:
     assert identity(Cosine(2e-6)) == identity(Cosine(2e-6, waves=1))
-    different = [Cosine(2e-6), Cosine(3e-6), Cosine(2e-6, 3), Wedge(1e-4), Wedge(2e-4), Wedge(1e-4, note="worn")]
-    different += [Cosine(2e-6) + profiles.Cylinder(1e-5), profiles.Halves(left=Wedge(1e-4), right=Cosine(2e-6))]
-    assert len({identity(profile) for profile in different}) == len(different)
+    user_profiles = [Cosine(2e-6), Cosine(3e-6), Cosine(2e-6, 3), Wedge(1e-4), Wedge(2e-4), Wedge(1e-4, note="worn")]
+    user_profiles += [Cosine(2e-6) + profiles.Cylinder(1e-5), profiles.Halves(left=Wedge(1e-4), right=Cosine(2e-6))]
+    assert len({identity(profile) for profile in user_profiles}) == len(user_profiles)
 
 
 def test_changed_formula_changes_identity() -> None:

@@ -261,10 +261,10 @@ def test_full_disk_raises(small_disk, study, workers):
     assert not list(small_disk.glob("**/*.part-*"))
     assert not Folder(small_disk / "out").holders
     assert intact(small_disk / "out")
-    done = count_finished(small_disk / "out")
+    finished_count = count_finished(small_disk / "out")
     filler_path.unlink()
     report = run(study, small_disk / "out")
-    assert (report.counts, report.solved) == ({"ok": 4}, 4 - done)
+    assert (report.counts, report.solved) == ({"ok": 4}, 4 - finished_count)
 
 
 @pytest.mark.system
@@ -333,10 +333,10 @@ def test_invalid_share_raises(study, tmp_path, share):
 
 
 def test_deleted_working_directory_raises(study, tmp_path, monkeypatch):
-    gone = tmp_path / "gone"
-    gone.mkdir()
-    monkeypatch.chdir(gone)
-    gone.rmdir()
+    removed_folder = tmp_path / "gone"
+    removed_folder.mkdir()
+    monkeypatch.chdir(removed_folder)
+    removed_folder.rmdir()
     with pytest.raises(StoreError, match="working directory"):
         run(study, None)
 

@@ -106,14 +106,14 @@ def test_interrupt_does_not_change_films(films: xr.Dataset, tmp_path: Path, fini
     """Within a group and between two groups."""
     solved: list[xr.Dataset] = []
 
-    def solve_some(case: Case, **options: Any) -> xr.Dataset:
+    def solve_or_fail(case: Case, **options: Any) -> xr.Dataset:
         if len(solved) == finished:
             raise KeyboardInterrupt
         solved.append(solve_film(case, **options))
         return solved[-1]
 
     with pytest.raises(KeyboardInterrupt, match=f"{finished} of 3 cases are kept"):
-        run_study(STUDY, tmp_path, workers=0, progress=False, solver=solve_some)
+        run_study(STUDY, tmp_path, workers=0, progress=False, solver=solve_or_fail)
     run_study(STUDY, tmp_path, workers=0, progress=False)
     assert_equal_bits(tmp_path, films)
 

@@ -60,12 +60,12 @@ def test_interrupted_run_releases_lock_and_resumes(large, tmp_path, signal_numbe
 
 
 @pytest.mark.system
-@pytest.mark.parametrize("begun", [True, False])
-def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
+@pytest.mark.parametrize("has_results", [True, False])
+def test_repeated_interrupts_end_run_quietly(large, tmp_path, has_results):
     """Ctrl-C from a terminal reaches the workers as well: eight times, while they solve and while they start."""
     folder = tmp_path / "out"
-    process = start_run(large, folder, "--workers", "2", tickets=3 if begun else 0)
-    wait_for(process, lambda: count_finished(folder) >= 1 if begun else (folder / "run.log").exists())
+    process = start_run(large, folder, "--workers", "2", tickets=3 if has_results else 0)
+    wait_for(process, lambda: count_finished(folder) >= 1 if has_results else (folder / "run.log").exists())
     for _ in range(8):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGINT)
@@ -74,7 +74,7 @@ def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
     assert process.returncode == 130, errors
     assert "Traceback" not in errors
     # The first interrupt may precede the first worker.
-    assert ("interrupted: ending the workers ..." if begun else "contactstudy: interrupted") in errors
+    assert ("interrupted: ending the workers ..." if has_results else "contactstudy: interrupted") in errors
     assert not Folder(folder).holders
 
 

@@ -128,7 +128,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
 
 
 def _convex_corners(case: Case) -> list[tuple[float, float]]:
-    """Positions and jumps of the slope of the convex corners of a profile that is not measured."""
+    """Convex corners of a formula profile: position and jump of the slope."""
     if as_shape(case.roller.profile).second_interpolation() is not None:
         return []
     return [(x, jump) for x, jump in zip(*(values.tolist() for values in case.slope_jumps), strict=True) if jump > 0]

@@ -46,9 +46,9 @@ def test_resulting_tilt_reproduces_position():
     case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
     grid = choose_grid(case, cells_x=8, cells_y=8)
     free = solve(case, grid, stresses=False)
-    held = solve(case_with(tilt=float(free.tilt)), grid, stresses=False)
-    np.testing.assert_allclose(held.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
-    assert float(held.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
+    tilted = solve(case_with(tilt=float(free.tilt)), grid, stresses=False)
+    np.testing.assert_allclose(tilted.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
+    assert float(tilted.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
 
 
 def test_opposite_tilts_mirror_the_pressure():

@@ -111,8 +111,8 @@ def load_up_to(result: xr.Dataset, x: FloatArray) -> FloatArray:
         else np.full(result.x.size, float(result.x[1] - result.x[0]))
     )
     edges = np.append(result.x.values - 0.5 * widths, result.x.values[-1] + 0.5 * widths[-1])
-    carried = (result.pressure.values.sum(axis=1) * widths) * float(result.y[1] - result.y[0])
-    return np.interp(x, edges, np.append(0.0, np.cumsum(carried)))
+    column_loads = (result.pressure.values.sum(axis=1) * widths) * float(result.y[1] - result.y[0])
+    return np.interp(x, edges, np.append(0.0, np.cumsum(column_loads)))
 
 
 @pytest.mark.parametrize("name", ["flush", "half-space"])

@@ -69,10 +69,10 @@ def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None
             )
     # The frictional work is a small difference of the supplied and the stored work.
     names = ("shift_x", "shift_y") if isinstance(motion, Shift) else ("lateral_creepage", "longitudinal_creepage")
-    put_in = sum(
+    input_work = sum(
         abs(float(computed[force] * computed[name])) for force, name in zip(("force_x", "force_y"), names, strict=True)
     )
-    assert float(computed["friction_work"]) == pytest.approx(float(fine["friction_work"]), abs=5e-3 * put_in)
+    assert float(computed["friction_work"]) == pytest.approx(float(fine["friction_work"]), abs=5e-3 * input_work)
 
 
 def test_motion_keeps_columns() -> None:

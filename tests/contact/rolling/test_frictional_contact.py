@@ -148,9 +148,9 @@ def test_material_mismatch_causes_slip(motion: Rolling | Shift) -> None:
     change = np.abs(coupled.pressure - rigid.pressure).max() / rigid.pressure.max()
     assert 1e-3 < float(change) < 0.2
     assert float(coupled.penetration_error) < 1e-5
-    like = solve_rolling(motion)
+    uncoupled = solve_rolling(motion)
     unchanged = solve_rolling(motion, coupled=True)
-    assert float(np.abs(like.pressure - unchanged.pressure).max()) < 1e-9 * float(like.pressure.max())
+    assert float(np.abs(uncoupled.pressure - unchanged.pressure).max()) < 1e-9 * float(uncoupled.pressure.max())
 
 
 def test_free_rolling_of_different_bodies_has_creepage() -> None:
