@@ -7,8 +7,8 @@
 * `passes`: a line contact over an elastic-plastic half-plane, step by step, in plane strain;
 * `shakedown`: Melan's bound as a cone program on equilibrium elements;
 * `film`: Reynolds' equation on the compliance of the cells, by a dense Newton method;
-* `stored`, `stress_file`, `contact_file`, `passes_file`, `film_file`, `generate`: the files in `data`, with the
-  estimates of their errors.
+* `reference_files`, `stress_file`, `contact_file`, `passes_file`, `film_file`, `generate`: the files in `data`, with
+  the estimates of their errors.
 
 The load cases are in `contactstudy.verification.problems`, the loading of the files in
 `contactstudy.verification.problems`.

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.finite_elements.contact import SolvedContact, flexibility, solve
-from benchmarks.finite_elements.stored import append_case, create_file
+from benchmarks.finite_elements.reference_files import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.verification.problems import CONTACT_CASES, ContactCase
 

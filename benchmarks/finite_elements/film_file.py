@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.finite_elements.film import compliance, solve
-from benchmarks.finite_elements.stored import append_case, create_file
+from benchmarks.finite_elements.reference_files import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.film.levels import create_cells
 from contactstudy.verification.film import coarse_film

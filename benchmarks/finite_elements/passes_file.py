@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.finite_elements.passes import PAIRS, YOUNG, PlasticStrip, Strip
-from benchmarks.finite_elements.stored import append_case, create_file
+from benchmarks.finite_elements.reference_files import append_case, create_file
 from contactstudy.verification.problems import PASSES_CASES, PassesCase
 
 PRODUCTION = Strip(length=20.0, depth=10.0, width=0.5, height=0.1, fine=2.2, step=1 / 32)

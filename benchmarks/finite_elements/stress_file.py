@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.finite_elements.harmonics import COMPONENTS
-from benchmarks.finite_elements.stored import append_case, create_file
+from benchmarks.finite_elements.reference_files import append_case, create_file
 from benchmarks.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
 from contactstudy.verification.problems import LOAD_CASES, LoadCase, quartic
 

@@ -20,7 +20,7 @@ from random import Random
 from typing import Any
 
 from benchmarks.mutation.equivalent import EQUIVALENT
-from benchmarks.mutation.forked import TESTS, Reached, Session, with_session
+from benchmarks.mutation.forks import TESTS, Reached, Session, with_session
 from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants
 
 Notes = dict[str, Any]

@@ -47,7 +47,7 @@ def test_figures_are_as_new_as_their_code() -> None:
 
 
 def test_every_marked_table_is_known() -> None:
-    source = (ROOT / "docs" / "_site" / "made.py").read_text()
+    source = (ROOT / "docs" / "_site" / "generated_tables.py").read_text()
     for page in (ROOT / "docs").rglob("*.md"):
         for name in re.findall(r"^<!-- made: ([\w-]+) -->$", page.read_text(), re.MULTILINE):
             assert f'"{name}": ' in source, (page.name, name)

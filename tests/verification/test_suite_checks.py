@@ -9,9 +9,9 @@ import pytest
 
 from contactstudy.verification import Verification, suite
 from contactstudy.verification.problems import Check
-from tests.verification import listed
+from tests.verification import check_names
 
-LISTED = listed.read()
+LISTED = check_names.read()
 LONG = {entry.group for entry in LISTED if entry.level == "full"}
 """Groups with further checks at the full level: the slow tier runs this level, which contains the quick one."""
 FULL = [entry for entry in LISTED if entry.group in LONG]
@@ -54,13 +54,13 @@ def parameters(*, slow: bool) -> list[object]:
 
 
 @pytest.mark.parametrize("entry", parameters(slow=False))
-def test_check(entry: listed.ListedCheck) -> None:
+def test_check(entry: check_names.ListedCheck) -> None:
     assert_check_passed(quick(entry.group)[entry.case, entry.quantity])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", parameters(slow=True))
-def test_full_level_check_passes(entry: listed.ListedCheck) -> None:
+def test_full_level_check_passes(entry: check_names.ListedCheck) -> None:
     (check,) = [
         c for c in full_verification().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)
     ]
@@ -76,7 +76,7 @@ def test_list_contains_all_checks(group: str) -> None:
 
 @pytest.mark.slow
 def test_list_contains_all_full_checks() -> None:
-    assert sorted(entry[1:] for entry in FULL) == sorted(listed.names(full_verification()))
+    assert sorted(entry[1:] for entry in FULL) == sorted(check_names.names(full_verification()))
     data = full_verification().to_dataset()
     assert bool(data["passed"].all())
     assert data.sizes["check"] == len(FULL)

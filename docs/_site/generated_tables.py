@@ -1,7 +1,7 @@
-"""Pages and tables of the documentation that are made from the code, so that nothing is typed twice.
+"""Tables and pages of the documentation, generated from the code.
 
 A line ``<!-- made: NAME -->`` in a page is replaced by the table `NAME` of :data:`TABLES`; the pages of the Python
-reference are made whole, one for each folder of the package that has public names.
+reference are generated completely, one for each folder of the package with public names.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ WHOLE = (
     "verification",
     "wear",
 )
-"""Packages of which everything in ``__all__`` is shown, also what ``contactstudy`` itself does not hand on."""
+"""Packages whose pages contain all names of ``__all__``, also names that ``contactstudy`` does not export."""
 
 FIRST = (
     "solution",
@@ -209,7 +209,7 @@ def _arguments(parser: argparse.ArgumentParser) -> str:
 
 
 def layers() -> str:
-    """Return the layers of the package from the top down, from the contract that holds them."""
+    """Return the layers of the package from the top down, from their contract in pyproject.toml."""
     return table(
         ("layer", "what it does"),
         [
@@ -328,7 +328,7 @@ def _entry(path: str, value: object) -> str:
     return f"::: {value.__name__}\n    options:\n      heading: {path}\n      members:{members}\n"
 
 
-# ------------------------------------------------------------------------------------------------ what MkDocs calls
+# ------------------------------------------------------------------------------------------------ hooks of MkDocs
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:

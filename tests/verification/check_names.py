@@ -1,6 +1,6 @@
 """The list of the suite's checks, from which the tests take the names of the checks before the run.
 
-After checks were added or renamed, ``python -m tests.verification.listed`` writes the list anew.
+After checks were added or renamed, ``python -m tests.verification.check_names`` writes the list anew.
 """
 
 from __future__ import annotations

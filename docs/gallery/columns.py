@@ -16,4 +16,4 @@ for ax, stop, title in zip(axes, (10.0, 0.15), ("the roller", "its end"), strict
     ax.stairs(1e-9 * result["pressure"].max("y"), 1e3 * edges, baseline=None, color="black")
     ax.set(xlabel="x (mm)", xlim=(0, stop), title=title)
 axes[0].set_ylabel("pressure (GPa)")
-figure.savefig("settled.png", dpi=200)
+figure.savefig("columns.png", dpi=200)

@@ -1,4 +1,4 @@
-"""Pages of the site whose source lies outside the folder docs: README, notebooks, changelog, and what pages link to."""
+"""Pages of the site whose source lies outside the folder docs: README, notebooks, changelog, and targets of links."""
 
 from __future__ import annotations
 
@@ -61,5 +61,5 @@ def on_page_markdown(markdown: str, **_: object) -> str:
 
 
 def on_page_content(content: str, *, page: Page, **_: object) -> str:
-    """Leave out of the notebooks' pages what would be fetched from other hosts."""
+    """Remove the diagrams of notebooks, which a browser would fetch from other hosts."""
     return DIAGRAMS.sub("", content) if page.file.src_uri.endswith(".ipynb") else content

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from benchmarks.finite_elements.stored import append_case, create_file
+from benchmarks.finite_elements.reference_files import append_case, create_file
 
 
 def test_file_with_two_cases(tmp_path: Path) -> None:
