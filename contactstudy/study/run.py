@@ -174,7 +174,7 @@ class Progress:
 
 @contextlib.contextmanager
 def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
-    """End the block at the first Ctrl-C, SIGTERM or SIGHUP; ignore further signals during the cleanup."""
+    """End the block at the first Ctrl-C, SIGTERM or SIGHUP; without it workers and unfinished files would remain."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
