@@ -95,7 +95,7 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
             description=description,
         )
 
-    for node, lines, where in _in_functions(ast.parse(source)):
+    for node, lines, where in _nodes_in_functions(ast.parse(source)):
         match node:
             case ast.BinOp(left=left, op=op) if type(op) in OTHER_OPERATORS:
                 symbol, replacement = OTHER_OPERATORS[type(op)]
@@ -117,11 +117,11 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
                 yield mutant(lines, where, start, stop, repr(FACTOR * value))
 
 
-def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+def _nodes_in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
     """Nodes of functions that compute, with the lines of their statement and the function's name."""
     for node in ast.iter_child_nodes(tree):
         name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
-        yield from _in_functions(node, name)
+        yield from _nodes_in_functions(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
                 yield from ((part, lines, name) for part, lines in _computing_nodes(statement, range(0)))

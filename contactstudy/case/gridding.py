@@ -41,9 +41,9 @@ def graded_grid(case: Case, edges: FloatArray, y_range: tuple[float, float], cel
     """Return a grid with columns between `edges` under the roller, and few cells beyond."""
     low, high = case.body.extent
     first_width, last_width = edges[1] - edges[0], edges[-1] - edges[-2]
-    before = growing_edges(edges[0] - low, first_width)
-    after = growing_edges(high - edges[-1], last_width)
-    return Grid.between(np.concatenate([edges[0] - before[::-1], edges, edges[-1] + after]), y_range, cells_y)
+    low_edges = edges[0] - growing_edges(edges[0] - low, first_width)[::-1]
+    high_edges = edges[-1] + growing_edges(high - edges[-1], last_width)
+    return Grid.between(np.concatenate([low_edges, edges, high_edges]), y_range, cells_y)
 
 
 def choose_grid(

@@ -183,8 +183,8 @@ def _draw_plane(text: str, position: dict[str, Any], figure: Figure, result: xr.
     """Von Mises stress in a plane."""
     plot_stress_plane(result, "von_mises", ax=figure.subplots(), si=True, **position)
     _, limit = cap_field(result, result["von_mises"])
-    capped = f" Near a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}."
-    return f"Von Mises stress {text}.{capped if limit < np.inf else ''}"
+    bound_text = f" Near a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}."
+    return f"Von Mises stress {text}.{bound_text if limit < np.inf else ''}"
 
 
 def _draw_section_maxima(figure: Figure, result: xr.Dataset) -> str:

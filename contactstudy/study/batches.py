@@ -42,7 +42,7 @@ SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstud
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
 
 
-class Ragged(NamedTuple):
+class RaggedArray(NamedTuple):
     """Arrays of all cases of a batch, one after the other: dimensions of each case's array, and flat values."""
 
     dims: tuple[str, ...]
@@ -55,7 +55,7 @@ class Batch:
 
     # a row per identity: status, run, texts, numbers (NaN if absent), and sizes of the arrays' dimensions
     cases: pd.DataFrame
-    arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
+    arrays: dict[str, RaggedArray] = field(default_factory=dict)  # arrays and their positions
     attributes: dict[str, dict[str, Any]] = field(default_factory=dict)  # of numbers and arrays
     coordinates: frozenset[str] = frozenset()  # names of arrays that are coordinates
     run_context: dict[str, Any] = field(default_factory=dict)  # versions and level, equal for all cases
@@ -93,7 +93,7 @@ class Batch:
         for name, (dims, values) in self.arrays.items():
             starts = self.offsets(dims)
             slices = [values[starts[row] : starts[row + 1]] for row in rows]
-            selected_arrays[name] = Ragged(dims, np.concatenate(slices) if slices else values[:0])
+            selected_arrays[name] = RaggedArray(dims, np.concatenate(slices) if slices else values[:0])
         return replace(self, cases=self.cases.iloc[rows], arrays=selected_arrays)
 
     def record(self, row: int) -> xr.Dataset:
@@ -118,7 +118,7 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
         for name, entries in batch.attributes.items():
             attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
     arrays = {
-        name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
+        name: RaggedArray(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
         for name, array in batches[0].arrays.items()
     }
     cases = pd.concat([batch.cases for batch in batches])
@@ -292,7 +292,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
             if dims := attributes[name].pop("array_dimensions", ""):
                 read_values = selected is None or name in selected
                 values = variable[:] if read_values else np.empty(0, dtype=variable.dtype)
-                ragged[name] = Ragged(tuple(dims.split()), values)
+                ragged[name] = RaggedArray(tuple(dims.split()), values)
             else:
                 columns[name] = variable[:]
         if parameters:
@@ -349,7 +349,7 @@ def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
                 values = values.astype(np.int8)
             elif name in deep and values.ndim >= 2:
                 values = values.astype(np.float32)
-            arrays[str(name)] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
+            arrays[str(name)] = RaggedArray(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
         cases=batch.cases.assign(**{f"{dim}{SIZE}": dataset.sizes[dim] for dim in sorted(dims)}),

@@ -79,9 +79,12 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
     for axis in "xy":
         heights[axis].attrs["units"] = "mm"
     np.testing.assert_allclose(heights_on(cells, heights.assign_attrs(units="um")), 1e-6 * heights.values)
-    for wrong in (heights.assign_attrs(units="GPa"), heights.assign_coords(x=heights.x.assign_attrs(units="1"))):
+    for invalid in (
+        heights.assign_attrs(units="GPa"),
+        heights.assign_coords(x=heights.x.assign_attrs(units="1")),
+    ):
         with pytest.raises(InvalidInputError, match=r"roughness.*attrs\['units'\]"):
-            heights_on(cells, wrong)
+            heights_on(cells, invalid)
     with pytest.raises(InvalidInputError, match=r"friction.attrs\['units'\] = 'N'"):
         check_friction(friction.assign_attrs(units="N"), Sliding(), coupled=False)
 

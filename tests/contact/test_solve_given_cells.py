@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, solve, solve_contact
-from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_ELASTIC, A, finite
+from tests.contact.refinement.rollers import CASES, HALF_SPACE, RADIUS, SHORT, SHORT_ELASTIC, A, finite
 
 
-@pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
+@pytest.mark.parametrize("body", [HALF_SPACE, finite(SHORT)], ids=["half", "finite"])
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
@@ -47,7 +47,7 @@ def test_steep_cell_growth_raises_error_with_position() -> None:
     heights = np.broadcast_to(0.5 * y**2, (7, 17))
     gap = xr.DataArray(heights, coords={"x": x, "y": y, "x_width": ("x", widths)}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match="cells of 1 and 5 m next to x = 2 m"):
-        solve_contact(HALF, gap, load=1.0)
+        solve_contact(HALF_SPACE, gap, load=1.0)
 
 
 def test_cells_missing_roller_end_raise_error() -> None:

@@ -126,7 +126,7 @@ def test_coincident_points_are_merged() -> None:
 NU = 0.3
 
 
-def on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
+def mean_on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
     edges_x, edges_y = (centre + 0.5 * length * np.array([-1, 1]) for centre, length in zip((x, y), size, strict=True))
     corners = corner(edges_x[:, None], edges_y[None, :], z, NU)
     return np.diff(np.diff(corners, axis=1), axis=2)[:, 0, 0] / (size[0] * size[1])
@@ -139,7 +139,7 @@ def test_small_rectangle_equals_point_load_displacements(point):
     free = 1 - 2 * NU
     inward = z / r**3 - free / (r * (r + z))
     np.testing.assert_allclose(
-        on_rectangle(normal_displacement_inside, *point),
+        mean_on_rectangle(normal_displacement_inside, *point),
         [x * inward, y * inward, 2 * (1 - NU) / r + z * z / r**3],
         rtol=1e-4,
         atol=1e-6,
@@ -147,7 +147,7 @@ def test_small_rectangle_equals_point_load_displacements(point):
     axial_kernel = 1 / r + y * y / r**3 + free * (1 / (r + z) - y * y / (r * (r + z) ** 2))
     lateral_kernel = x * y * (1 / r**3 - free / (r * (r + z) ** 2))
     np.testing.assert_allclose(
-        on_rectangle(tangential_displacement_inside, *point),
+        mean_on_rectangle(tangential_displacement_inside, *point),
         [lateral_kernel, axial_kernel, y * (z / r**3 + free / (r * (r + z)))],
         rtol=1e-4,
         atol=1e-6,

@@ -12,14 +12,14 @@ from contactstudy.bodies.hertz import line_load
 from contactstudy.profiles import Cylinder, FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
 from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, axial_results
 
-HALF = LENGTH / 2
+HALF_LENGTH = LENGTH / 2
 
 
 def test_lundberg_equals_two_logarithms(positions: np.ndarray) -> None:
     """The drop is a sum of logarithms of the distances to both ends."""
     profile = Lundberg(amplitude=2e-7, delta=1.5)
     inner = positions[1:-1]
-    expected = -1.5 * 2e-7 * (np.log(HALF - inner) + np.log(HALF + inner) - 2 * np.log(HALF))
+    expected = -1.5 * 2e-7 * (np.log(HALF_LENGTH - inner) + np.log(HALF_LENGTH + inner) - 2 * np.log(HALF_LENGTH))
     np.testing.assert_allclose(profile.drop(inner, LENGTH), expected, rtol=1e-12, atol=1e-20)
     assert np.isinf(profile.drop(positions[[0, -1]], LENGTH)).all()
 
@@ -69,20 +69,20 @@ def test_lundberg_pressure_decreases_outwards_below_the_design_load(solve_profil
 def test_end_drop_of_johns_and_gohar(steel: Material) -> None:
     """The published end drop is A ln(2 sqrt(e) h / b) = A (1.1932 + ln(h / b)), h half the length."""
     profile = JohnsGohar.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
-    expected = profile.amplitude * (1.1932 + np.log(HALF / profile.half_width))
+    expected = profile.amplitude * (1.1932 + np.log(HALF_LENGTH / profile.half_width))
     assert profile.edge_drop(LENGTH) == pytest.approx(expected, rel=1e-5)
     assert profile.half_width == pytest.approx(65e-6)
 
 
 def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> None:
     profile = JohnsGohar(amplitude=2e-7, half_width=1e-4)
-    expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF) * (2 * positions / LENGTH) ** 2))
+    expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF_LENGTH) * (2 * positions / LENGTH) ** 2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-4, atol=1e-22)
 
 
 @given(st.floats(1e-9, 1e-5), st.floats(1e-7, 1e-3))
 def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_width: float) -> None:
-    x = HALF * np.linspace(-1, 1, 41)
+    x = HALF_LENGTH * np.linspace(-1, 1, 41)
     johns = JohnsGohar(amplitude, half_width)
     fujiwara = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
     np.testing.assert_allclose(fujiwara.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
@@ -90,7 +90,7 @@ def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_widt
 
 @given(st.floats(1e-9, 1e-5))
 def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
-    x = HALF * np.linspace(-0.999, 0.999, 41)
+    x = HALF_LENGTH * np.linspace(-0.999, 0.999, 41)
     lundberg = Lundberg(amplitude).drop(x, LENGTH)
     np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
     deep = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
@@ -101,8 +101,8 @@ def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
     """The formula has the crowned length a' of one side, and y from the roller's end, as in the paper."""
     amplitude, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
     profile = FujiwaraKawase(amplitude, end_drop, k1, k2)
-    crown_length = k2 * HALF
-    from_end = HALF - np.abs(positions)
+    crown_length = k2 * HALF_LENGTH
+    from_end = HALF_LENGTH - np.abs(positions)
     scaled_distance = np.where(from_end < crown_length, 1 - from_end / crown_length, 0.0)
     expected = k1 * amplitude * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * amplitude))) * scaled_distance**2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-7, atol=1e-20)

@@ -12,41 +12,41 @@ from contactstudy.profiles import measurement_files
 from contactstudy.profiles.measurement_files import Heights, read_heights, rotate_heights
 
 X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
-MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
+HEIGHTS = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
 
 
-def assert_heights(measured: Heights, x=X, y=Y, heights=MAP) -> None:
+def assert_heights(measured: Heights, x=X, y=Y, heights=HEIGHTS) -> None:
     np.testing.assert_allclose(measured.x, x, rtol=1e-12, atol=1e-20)
     np.testing.assert_allclose(measured.y, y, rtol=1e-12, atol=1e-20)
     np.testing.assert_allclose(measured.heights, heights, rtol=1e-12)
 
 
 def test_x3p_surface(tmp_path: Path) -> None:
-    values = MAP.copy()
+    values = HEIGHTS.copy()
     values[2, 1] = np.nan
     x3pio.write(tmp_path / "map.x3p", values.T, x_scale=2e-6, y_scale=3e-6)
     assert_heights(read_heights(tmp_path / "map.x3p"), heights=values)
-    x3pio.write(tmp_path / "line.x3p", MAP[:, :1].T, x_scale=2e-6, y_scale=3e-6)
+    x3pio.write(tmp_path / "line.x3p", HEIGHTS[:, :1].T, x_scale=2e-6, y_scale=3e-6)
     line = read_heights(tmp_path / "line.x3p")
     assert line.y is None
-    np.testing.assert_allclose(line.heights, MAP[:, 0])
+    np.testing.assert_allclose(line.heights, HEIGHTS[:, 0])
 
 
 def test_x3p_profile_of_even_and_uneven_points(tmp_path: Path) -> None:
-    x3pio.Profile.from_array(MAP[:, 0], x_scale=2e-6).save(tmp_path / "even.x3p")
+    x3pio.Profile.from_array(HEIGHTS[:, 0], x_scale=2e-6).save(tmp_path / "even.x3p")
     uneven = np.array([0.0, 1.0, 3.0, 4.0, 6.0]) * 1e-6
-    points = np.stack([uneven, np.zeros(5), MAP[:, 0]], axis=1)
+    points = np.stack([uneven, np.zeros(5), HEIGHTS[:, 0]], axis=1)
     x3pio.Profile.from_points(points).save(tmp_path / "uneven.x3p")
     for name, x in (("even", X), ("uneven", uneven)):
         measured = read_heights(tmp_path / f"{name}.x3p")
         assert measured.y is None
         np.testing.assert_allclose(measured.x, x, atol=1e-20)
-        np.testing.assert_allclose(measured.heights, MAP[:, 0])
+        np.testing.assert_allclose(measured.heights, HEIGHTS[:, 0])
 
 
 def test_rotation_moves_heights_with_their_points() -> None:
     """A point at (x, y) moves to its rotated position with its height."""
-    measured = Heights(X, Y, MAP)
+    measured = Heights(X, Y, HEIGHTS)
     for turn in (0, 90, 180, 270):
         rotated = rotate_heights(measured, turn)
         angle = np.deg2rad(turn)
@@ -57,7 +57,7 @@ def test_rotation_moves_heights_with_their_points() -> None:
                 np.abs(axis - axis.mean() - coordinate).argmin()
                 for axis, coordinate in zip(rotated[:2], position, strict=True)
             ]
-            assert rotated.heights[tuple(nearest)] == MAP[i, j]
+            assert rotated.heights[tuple(nearest)] == HEIGHTS[i, j]
         assert (np.diff(rotated.x) > 0).all()
         assert (np.diff(rotated.y) > 0).all()
     assert_heights(rotate_heights(rotate_heights(measured, 90, mirror=True), 90, mirror=True))
@@ -66,7 +66,7 @@ def test_rotation_moves_heights_with_their_points() -> None:
 @pytest.mark.parametrize(("turn", "line"), [(45, False), (True, False), ("90", False), (90, True)])
 def test_invalid_angles_are_rejected(turn: object, line: bool) -> None:
     with pytest.raises(InvalidInputError, match="turn = "):
-        rotate_heights(Heights(X, None, MAP[:, 0]) if line else Heights(X, Y, MAP), turn)
+        rotate_heights(Heights(X, None, HEIGHTS[:, 0]) if line else Heights(X, Y, HEIGHTS), turn)
 
 
 def test_error_names_the_bad_file(tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_error_names_the_bad_file(tmp_path: Path) -> None:
 def test_large_xml_is_rejected_before_unpacking(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(measurement_files, "MAX_XML", 100_000)
     path = tmp_path / "bomb.x3p"
-    x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
+    x3pio.write(path, HEIGHTS.T, x_scale=2e-6, y_scale=3e-6)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("other.xml", b" " * (measurement_files.MAX_XML + 1))
     monkeypatch.setattr(x3pio, "read", lambda path: pytest.fail("the file is unpacked"))
@@ -93,7 +93,7 @@ def test_large_xml_is_rejected_before_unpacking(tmp_path: Path, monkeypatch) -> 
 
 def test_x3p_without_the_extra_names_the_extra(tmp_path: Path, monkeypatch) -> None:
     path = tmp_path / "flank.x3p"
-    x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
+    x3pio.write(path, HEIGHTS.T, x_scale=2e-6, y_scale=3e-6)
     monkeypatch.setattr(measurement_files, "find_spec", lambda name: None)
     with pytest.raises(ContactStudyError, match=r'pip install "contactstudy\[measured\]"'):
         read_heights(path)
@@ -103,7 +103,7 @@ def test_clouds_and_layers_are_rejected(tmp_path: Path) -> None:
     x3pio.write_points(tmp_path / "cloud.x3p", np.random.default_rng(0).normal(size=(9, 3)))
     with pytest.raises(InvalidInputError, match="cloud of points"):
         read_heights(tmp_path / "cloud.x3p")
-    x3pio.write(tmp_path / "two.x3p", np.stack([MAP.T, MAP.T]), x_scale=2e-6, y_scale=3e-6)
+    x3pio.write(tmp_path / "two.x3p", np.stack([HEIGHTS.T, HEIGHTS.T]), x_scale=2e-6, y_scale=3e-6)
     with pytest.raises(InvalidInputError, match=r"one layer.*it has 2"):
         read_heights(tmp_path / "two.x3p")
 

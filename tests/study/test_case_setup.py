@@ -124,12 +124,12 @@ def test_elastic_roller_defaults_to_body_material():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "parameter"),
+    ("contradiction", "parameter"),
     [({"roller_young": 70e9}, "roller_young"), ({"roller_body": "rubber"}, "roller_body"), ({"tilt": 1.0}, "tilt")],
 )
-def test_contradictory_roller_parameters_raise(wrong, parameter):
+def test_contradictory_roller_parameters_raise(contradiction, parameter):
     with pytest.raises(InvalidInputError, match=parameter):
-        build_setup({**BASE, "e_over_a": 1.0, **wrong})
+        build_setup({**BASE, "e_over_a": 1.0, **contradiction})
 
 
 def test_identity_contains_default_accuracy():

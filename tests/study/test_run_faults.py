@@ -64,10 +64,10 @@ def test_message_contains_missing_alternatives():
 
 
 @pytest.mark.parametrize("call", [run_study, Study.from_mapping])
-@pytest.mark.parametrize("wrong", ["x", None, 3])
-def test_invalid_study_arguments_raise(call, wrong):
+@pytest.mark.parametrize("argument", ["x", None, 3])
+def test_invalid_study_arguments_raise(call, argument):
     with pytest.raises(InvalidInputError, match="study"):
-        call(wrong)
+        call(argument)
 
 
 def test_invalid_folder_raises():

@@ -30,10 +30,10 @@ def test_worst_point_of_fields(expected: list[float], index: int) -> None:
     assert not check.passed
 
 
-@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
-def test_nan_fails_check(wrong: float) -> None:
-    assert not Reference("case", "source").compare("quantity", wrong, 1.0, 1e9).passed
-    assert not Reference("case", "source").compare("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_nan_fails_check(value: float) -> None:
+    assert not Reference("case", "source").compare("quantity", value, 1.0, 1e9).passed
+    assert not Reference("case", "source").compare("field", [1.0, value], [1.0, 1.0], 1e9).passed
     assert not Reference("case", "source").compare("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
 
 

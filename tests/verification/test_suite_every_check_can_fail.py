@@ -112,11 +112,11 @@ def distort_between_ends(patch: Patch) -> None:
     """Distort the stress between two ends only."""
     solve_real = stress.stress_field
 
-    def wrong(body, *arguments, **keywords):
+    def solve_wrong_stress(body, *arguments, **keywords):
         distorted_stress = solve_real(body, *arguments, **keywords)
         return distorted_stress * 1.05 if isinstance(body, FiniteLengthSpace) else distorted_stress
 
-    everywhere(patch, "stress_field", wrong)
+    everywhere(patch, "stress_field", solve_wrong_stress)
 
 
 def softer_bodies(patch: Patch) -> None:
@@ -126,10 +126,10 @@ def softer_bodies(patch: Patch) -> None:
 def twice_the_friction(patch: Patch) -> None:
     solve_real = contact.solve_contact
 
-    def wrong(body, gap, *, friction, **keywords):
+    def solve_with_double_friction(body, gap, *, friction, **keywords):
         return solve_real(body, gap, friction=2 * friction, **keywords)
 
-    patch.setattr(tribology, "solve_contact", wrong)
+    patch.setattr(tribology, "solve_contact", solve_with_double_friction)
 
 
 def conducting_ends(patch: Patch) -> None:
@@ -241,12 +241,12 @@ def grid_without_effect(patch: Patch) -> None:
 def results_that_depend_on_the_grid(patch: Patch) -> None:
     real = contact.solve_contact
 
-    def wrong(body, gap, load, **keywords):
+    def solve_wrong_contact(body, gap, load, **keywords):
         result = real(body, gap, load=load, **keywords)
         factor = 1 + 0.05 * np.sin(gap.size)
         return result.assign(pressure=factor * result["pressure"], approach=factor * result["approach"])
 
-    patch.setattr(convergence, "solve_contact", wrong)
+    patch.setattr(convergence, "solve_contact", solve_wrong_contact)
 
 
 Faults = tuple[Callable[[Patch], None], ...]

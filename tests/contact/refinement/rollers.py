@@ -10,7 +10,7 @@ from contactstudy.contact.normal.contact import Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import RefinedContact, _ColumnSolver, refine_contact
 
 STEEL = Material(210e9, 0.3)
-HALF = HalfSpace(material=STEEL)
+HALF_SPACE = HalfSpace(material=STEEL)
 RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
 A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
 """Hertz half-width of a rigid roller; the half-width of an elastic roller is twice as large."""
@@ -49,7 +49,7 @@ def finer_peak(case: Case, refined: RefinedContact, factor: int) -> float:
 CASES: dict[str, Case] = {
     "flush": Case(body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
     "inside": Case(body=finite(9 * A), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
-    "half-space": Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "half-space": Case(body=HALF_SPACE, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
     "quarter": Case(
         body=QuarterSpace(material=STEEL), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, end_distance=0.5 * A
     ),

@@ -31,7 +31,7 @@ from contactstudy.contact.refinement.refined_contact import (
 from contactstudy.errors import WindowError
 from tests.contact.refinement.rollers import (
     CASES,
-    HALF,
+    HALF_SPACE,
     LENGTH,
     PRESSURE,
     RADIUS,
@@ -51,7 +51,7 @@ KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
 
 def test_fillet_peak_error_covers_finer_cells() -> None:
     fillet = 0.2e-3
-    case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=filleted(fillet), max_pressure=PRESSURE)
     computed = refined_at(case)
     peak, error = computed.refined.peak, computed.refined.peak_error
     finer = finer_peak(case, computed, 2)
@@ -64,7 +64,7 @@ def test_fillet_peak_error_covers_finer_cells() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("fillet", [max(KNOWN_FILLETS), min(KNOWN_FILLETS)])
 def test_fillet_peak_error_covers_four_times_finer_cells(fillet: float) -> None:
-    case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=filleted(fillet), max_pressure=PRESSURE)
     computed = refined_at(case)
     finer = finer_peak(case, computed, 4)
     assert finer / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=1e-3)
@@ -136,7 +136,7 @@ def test_measured_fillet_has_peak_of_fillet() -> None:
     peaks = []
     for profile in (formula_profile, table):
         roller = Roller(radius=RADIUS, length=LENGTH, profile=profile)
-        computed = refined_at(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
+        computed = refined_at(Case(body=HALF_SPACE, roller=roller, max_pressure=PRESSURE)).refined
         assert computed.accurate
         peaks.append(computed.peak)
     assert peaks[1] == pytest.approx(peaks[0], rel=0.01)
@@ -181,13 +181,13 @@ class _Crown:
 
 
 def test_cache_compares_cases_by_value() -> None:
-    case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
     first_contact = refine_contact(case, 0.05, 1e-6)
     assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first_contact
     assert refine_contact(case, 0.04, 1e-6) is not first_contact
     assert refine_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first_contact
     expected = _Crown(5e-3)
-    changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=expected), max_pressure=PRESSURE)
+    changed = Case(body=HALF_SPACE, roller=Roller(radius=5e-3, length=SHORT, profile=expected), max_pressure=PRESSURE)
     previous_peak = refine_contact(changed, 0.05, 1e-6).refined.peak
     expected.radius = 2.5e-3
     assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * previous_peak
@@ -228,7 +228,7 @@ def test_face_length_beyond_roller_end(distance: float) -> None:
 
 
 def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None:
-    case, attempts = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
+    case, attempts = Case(body=HALF_SPACE, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
 
     def too_narrow(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
         attempts.append(half_window / case.hertz_half_width)
@@ -242,7 +242,7 @@ def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 FITTED = {
-    "peaks at fillets": Case(body=HALF, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE),
+    "peaks at fillets": Case(body=HALF_SPACE, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE),
     "even": Case(
         body=FiniteLengthSpace(length=1e-3, material=STEEL, model="mirror"),
         roller=Roller(radius=RADIUS, length=1e-3),
@@ -283,7 +283,7 @@ def test_wavy_profile_crests_are_resolved() -> None:
     """Some crests below the depth of the first columns are loaded: the approach is several a**2/2R."""
     length, wave = 2e-3, 0.2e-3
     roller = Roller(radius=RADIUS, length=length, profile=Wavy(0.5, 0.6e-6, wave))
-    case = Case(body=HALF, roller=roller, max_pressure=0.7e9)
+    case = Case(body=HALF_SPACE, roller=roller, max_pressure=0.7e9)
     refined = solve(case, stresses=False, accuracy=0.03)
     uniform = solve(case, choose_grid(case, cells_x=4, cells_y=12, window=3.0), stresses=False)
     for crest in range(5):

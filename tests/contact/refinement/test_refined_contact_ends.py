@@ -9,7 +9,7 @@ from contactstudy import Case, FiniteLengthSpace, Material, QuarterSpace, Roller
 from contactstudy.contact.refinement.laws import edge_peak
 from contactstudy.contact.refinement.refined_contact import refined_values
 from tests.contact.refinement.rollers import (
-    HALF,
+    HALF_SPACE,
     LENGTH,
     PRESSURE,
     RADIUS,
@@ -24,7 +24,7 @@ from tests.contact.refinement.rollers import (
 
 
 def test_sharp_rigid_end_has_square_root_law() -> None:
-    case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     values = refined_values(case, refined_at(case))
     assert np.isinf(values.peak_pressure)
     assert np.isinf(values.peak_pressure_error)
@@ -38,10 +38,10 @@ def test_sharp_rigid_end_has_square_root_law() -> None:
 
 def test_edge_peak_matches_small_fillet() -> None:
     fillet_radius = 0.01e-3
-    sharp = refined_at(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
+    sharp = refined_at(Case(body=HALF_SPACE, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
-    solved = refined_at(Case(body=HALF, roller=filleted(fillet_radius), max_pressure=PRESSURE))
+    solved = refined_at(Case(body=HALF_SPACE, roller=filleted(fillet_radius), max_pressure=PRESSURE))
     assert solved.refined.accurate
     assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet_radius) == pytest.approx(
         solved.refined.peak, rel=0.01
@@ -80,7 +80,7 @@ def test_tilted_end_without_correction_has_logarithm() -> None:
 
 def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
-    computed = refined_at(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
+    computed = refined_at(Case(body=HALF_SPACE, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
     assert computed.accurate
     assert computed.values["peak_pressure"] == [0.0, np.inf]
     assert computed.values["end_load"][0] == 0.0
@@ -178,7 +178,7 @@ def test_law_of_nearly_flush_end_does_not_depend_on_accuracy(material: Material 
 
 def test_law_of_corner_does_not_depend_on_accuracy() -> None:
     roller = Roller(radius=RADIUS, length=SHORT, profile=profiles.Chamfer(width=0.5 * A, angle=0.3))
-    case = Case(body=HALF, roller=roller, max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=roller, max_pressure=PRESSURE)
     results = [solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.05, 0.01, 0.005)]
     assert [float(result.corner_distance) for result in results] == pytest.approx(
         [float(results[-1].corner_distance)] * 3, rel=0.02
@@ -195,6 +195,6 @@ class Roof:
 
 def test_window_is_widened_for_ridge_of_a_long_roller() -> None:
     roller = Roller(radius=RADIUS, length=4000 * A, profile=Roof())
-    case = Case(body=HALF, roller=roller, max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=roller, max_pressure=PRESSURE)
     pressure = solve(case, accuracy=0.1, stresses=False).pressure.any("x")
     assert float(pressure.y[pressure].max()) > 12 * A

@@ -29,8 +29,8 @@ from contactstudy.contact import ContactSettings
 from tests.contact.rolling.motions import FRICTION, LOAD, MOTIONS
 
 STEEL = Material(0.91, 0.3)
-HALF = HalfSpace(material=STEEL)
-PAIR = Counterbody(HALF)
+HALF_SPACE = HalfSpace(material=STEEL)
+PAIR = Counterbody(HALF_SPACE)
 
 
 def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
@@ -45,7 +45,7 @@ def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
 
 def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
-    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | keywords
+    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF_SPACE} | keywords
     settings_values = {
         name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments
     }
@@ -90,7 +90,7 @@ def test_slip_follows_from_displacements() -> None:
     """The slip of a shift equals the rigid shift minus the surfaces' displacement, from the public operator."""
     result = solve_rolling(Shift(y=0.012, x=0.005))
     shifted = surface_displacement(
-        HALF, 0 * result.pressure, traction_x=result.traction_x, traction_y=result.traction_y, components="xy"
+        HALF_SPACE, 0 * result.pressure, traction_x=result.traction_x, traction_y=result.traction_y, components="xy"
     )
     slips = (result.pressure > 0) & ~result.stick.astype(bool)
     for axis, shift in (("x", 0.005), ("y", 0.012)):
