@@ -21,6 +21,7 @@ from contactstudy.arrays.variables import (
     ERROR_KIND,
     NOT_ESTIMATED,
     STRESSES,
+    UNKNOWN_ERROR,
     index_of,
     labelled_cells,
     require,
@@ -47,7 +48,7 @@ def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
             unit = variable_of(name, array.attrs, coordinate=name in dataset.coords).units
             has_error_estimate = name.endswith("_error") or array.attrs.get(ERROR_KIND) != NOT_ESTIMATED
             texts[name] = f"{name} [{unit}]" if unit and unit != "1" else name
-            texts[name] += "" if has_error_estimate else f" (error {NOT_ESTIMATED})"
+            texts[name] += "" if has_error_estimate else f" ({UNKNOWN_ERROR})"
     return texts
 
 

@@ -24,6 +24,7 @@ from contactstudy.versions import version_of
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
 ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
 ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"  # whether ``<name>_error`` has the error
+UNKNOWN_ERROR = f"error {NOT_ESTIMATED}"  # remark on a number in tables and figures
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""

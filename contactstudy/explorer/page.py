@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.analysis import edge_factors
 from contactstudy.arrays.engineering import unit_for
-from contactstudy.arrays.variables import NOT_ESTIMATED, variable_of
+from contactstudy.arrays.variables import NOT_ESTIMATED, UNKNOWN_ERROR, variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import (
@@ -32,7 +32,7 @@ from contactstudy.explorer.cases import (
 from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.tables import UNKNOWN_ERROR, Quantity, Summary, summary
+from contactstudy.report.tables import Quantity, Summary, summary
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list

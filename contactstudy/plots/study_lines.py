@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import axial_pressure, dimension_along, measure, single_case
-from contactstudy.arrays.variables import DERIVED, index_of, require
+from contactstudy.arrays.variables import DERIVED, UNKNOWN_ERROR, index_of, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.stress import plane_stress, plot_stress_plane
@@ -45,7 +45,6 @@ PLATEAU = 0.1  # Largest relative deviation from the pressure at mid-length of a
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")  # Default quantities
 END_LOADS = ("end_load_first", "end_load_last")  # Replace the peak pressure if it is singular in every case
 OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
-OPEN_LABEL = "error not estimated"
 
 ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
@@ -152,7 +151,7 @@ def _draw_panel(ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | Non
         if np.isfinite(bars).any():
             ax.errorbar(positions, finite_line, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
         if np.isfinite(finite_line[open_cases]).any():
-            marks[OPEN_LABEL] = {"marker": "o", **OPEN_MARK}
+            marks[UNKNOWN_ERROR] = {"marker": "o", **OPEN_MARK}
             if (np.isfinite(finite_line) & ~open_cases).any():
                 open_values = np.where(open_cases, finite_line, np.nan)
                 ax.plot(positions, open_values, color=style["color"], marker=style["marker"], **OPEN_MARK)

@@ -13,8 +13,9 @@ from contactstudy.analysis import single_case
 from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import format_quantity
+from contactstudy.arrays.variables import UNKNOWN_ERROR
 from contactstudy.case.serialization import tables_within
-from contactstudy.report.tables import UNKNOWN_ERROR, Quantity, Summary, summary
+from contactstudy.report.tables import Quantity, Summary, summary
 
 YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if a number is missing
 LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4

@@ -17,13 +17,13 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import single_case, solved_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
-from contactstudy.arrays.variables import package_version
+from contactstudy.arrays.variables import UNKNOWN_ERROR, package_version
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.study_lines import figures_with_selections
 from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, case_pictures, encode_figure, side_view
 from contactstudy.report.sources import citations
-from contactstudy.report.tables import UNKNOWN_ERROR, Summary, case_table, summary
+from contactstudy.report.tables import Summary, case_table, summary
 from contactstudy.study import collect
 from contactstudy.study.files import load_result
 from contactstudy.study.folder import Folder

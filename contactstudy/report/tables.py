@@ -14,7 +14,7 @@ import xarray as xr
 from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import NUMBER_STYLE, TEXT_STYLE, format_quantity, format_with_error, html_table
-from contactstudy.arrays.variables import AXES, NOT_ESTIMATED, STRESSES, variable_of
+from contactstudy.arrays.variables import AXES, NOT_ESTIMATED, STRESSES, UNKNOWN_ERROR, variable_of
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
@@ -24,7 +24,6 @@ from contactstudy.contact.solve import reference_depths
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import describe_profile
 
-UNKNOWN_ERROR = f"error {NOT_ESTIMATED}"
 SINGULAR = "singular: unbounded towards a sharp end"
 CELL_MEAN = f"mean over the cell of largest pressure, {UNKNOWN_ERROR}"
 OPEN_END = "no contact at this end"
