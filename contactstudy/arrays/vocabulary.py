@@ -357,9 +357,9 @@ RULES = {  # names made from other variables or coordinates; their unit, symbol 
     "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),
     "largest_{name}": Variable(SCALAR, "{units}", "", "largest sample of the {variable}"),
     **{
-        f"{prefix}_{{name}}_{axis}": Variable(SCALAR, "m", "", f"{axis} of the largest {{variable}}")
+        f"{prefix}_{{name}}_{axis}": Variable(SCALAR, "m", "", f"{meaning} of the largest {{variable}}")
         for prefix in ("peak", "largest")
-        for axis in "xyz"
+        for axis, meaning in (("x", "x"), ("y", "y"), ("z", "depth"))
     },
     "{name}_error": Variable(SCALAR, "{units}", "", "estimated discretisation error of the {variable}"),
     "inner_{name}": Variable(SCALAR, "{units}", "", "{variable}, at the inner raceway"),

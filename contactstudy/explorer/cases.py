@@ -222,6 +222,7 @@ class Image(NamedTuple):
     vertical: Span
     limit: float
     names: tuple[str, str]
+    has_depth: bool  # whether the vertical axis is the depth, which points downwards
     largest: tuple[float, float, float]  # size and position of the largest value, which pixels may miss
     position: str = ""
 
@@ -307,6 +308,7 @@ def _image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: U
         vertical=(low, high),
         limit=limit / scale.stress,
         names=(horizontal_label, vertical_label),
+        has_depth="z" in names,
         largest=largest if np.isfinite(largest[0]) else (np.nan, np.nan, np.nan),
     )
 

@@ -85,9 +85,8 @@ class AxialFigure:
 class ImageFigure:
     """Field as an image with a colour bar and a cross at the field's largest value; depths increase downwards."""
 
-    def __init__(self, *, downwards: bool = False) -> None:
+    def __init__(self) -> None:
         self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
-        self._downwards = downwards
         self._source = ColumnDataSource({"image": [], "x": [], "y": [], "w": [], "h": []})
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self.figure.image(image="image", x="x", y="y", dw="w", dh="h", source=self._source, color_mapper=self._mapper)
@@ -109,8 +108,7 @@ class ImageFigure:
         self._largest.data = {"x": [image.largest[1]], "y": [image.largest[2]]}
         self._mapper.update(high=max(limit, 1e-12))
         self.figure.x_range.update(start=start, end=stop)
-        is_depth_axis = self._downwards and image.names[1].startswith("depth")
-        self.figure.y_range.update(start=vertical[is_depth_axis], end=vertical[not is_depth_axis])
+        self.figure.y_range.update(start=vertical[image.has_depth], end=vertical[not image.has_depth])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
 
 

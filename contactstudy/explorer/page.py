@@ -77,7 +77,7 @@ class Page:
         self.parameter = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
-        self.surface_figures, self.plane_figures = [ImageFigure()], [ImageFigure(downwards=True)]
+        self.surface_figures, self.plane_figures = [ImageFigure()], [ImageFigure()]
         surface, plane = self.surface_figures[0].figure, self.plane_figures[0].figure
         figures = (self.axial.figure, surface, None, plane, None, self.study.figure)
         self.panes = [pn.pane.Bokeh(figure, sizing_mode="stretch_width") for figure in figures]
@@ -91,7 +91,7 @@ class Page:
         self.choices[1] = self._create_choices("second case: ")
         self._second_choices.objects = list(self.choices[1].values())
         self.surface_figures.append(ImageFigure())
-        self.plane_figures.append(ImageFigure(downwards=True))
+        self.plane_figures.append(ImageFigure())
         self.panes[2].object, self.panes[4].object = self.surface_figures[1].figure, self.plane_figures[1].figure
 
     def _create_choices(self, prefix: str) -> dict[str, Any]:

@@ -56,8 +56,6 @@ def scale_of(array: xr.DataArray) -> tuple[float, str]:
 def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or quantity: stresses in MPa or GPa, lengths in µm or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
-    if text.startswith("z of "):
-        text = f"depth of {text.removeprefix('z of ')}"
     factor, unit = scale_of(array)
     return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
 
