@@ -113,6 +113,7 @@ def test_common_axes_of_two_cases(page: Page) -> None:
         ]
         assert axis_spans[0] == axis_spans[1]
         assert image_corners[0] != image_corners[1]
+        assert (axis_spans[0][0] > axis_spans[0][1]) is (figures is page.plane_figures), "depths increase downwards"
         for y, height in image_corners:
             assert min(axis_spans[0]) <= y
             assert y + height <= max(axis_spans[0])
