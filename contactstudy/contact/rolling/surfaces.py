@@ -49,9 +49,9 @@ class Surfaces(NamedTuple):
 
 
 class LeadingEdges(NamedTuple):
-    """Sliding columns and pressure that determine the positions of the slip in the cells of a rolling contact."""
+    """Positions of the slip in the cells of a rolling contact, and the pressure that determines the other positions."""
 
-    slides_fully: BoolArray  # (x): columns without sticking cells
+    offset: FloatArray  # (x): position in columns whose leading cell slips, in cells ahead of the centre; else NaN
     pressure: FloatArray  # (x, y): pressure whose extrapolation to zero is the leading edge, Pa
 
 
