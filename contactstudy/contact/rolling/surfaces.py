@@ -49,9 +49,9 @@ class Surfaces(NamedTuple):
 
 
 class LeadingEdges(NamedTuple):
-    """Positions of the slip in the cells of a rolling contact, and the pressure that determines the other positions."""
+    """Slip and pressure that determine the positions of the slip in the cells of a rolling contact."""
 
-    offset: FloatArray  # (x): position in columns whose leading cell slips, in cells ahead of the centre; else NaN
+    slips: BoolArray  # (x): columns whose leading cell slips
     pressure: FloatArray  # (x, y): pressure whose extrapolation to zero is the leading edge, Pa
 
 

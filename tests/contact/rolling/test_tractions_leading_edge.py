@@ -12,11 +12,10 @@ from contactstudy.contact.rolling.surfaces import LeadingEdges
 from contactstudy.contact.rolling.tractions import (
     DEPENDENT_OFFSET,
     EDGE_OFFSET,
-    SLIDING_OFFSET,
     SLIPPING_OFFSET,
     RollingCells,
     averaging_weights,
-    find_constant_offsets,
+    find_slipping_edges,
 )
 from contactstudy.verification.tribology import material, rolling_ellipse
 
@@ -106,8 +105,7 @@ def test_half_cell_offset_matches_published_creepage(monkeypatch: pytest.MonkeyP
     """
     between_neighbours = 0.5 - EDGE_OFFSET
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: between_neighbours)
-    for name in ("SLIDING_OFFSET", "SLIPPING_OFFSET"):
-        monkeypatch.setattr(tractions, name, 0.5)
+    monkeypatch.setattr(tractions, "SLIPPING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
     computed = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
@@ -142,13 +140,11 @@ def test_single_cell_ahead_is_separate_contact() -> None:
     assert computed.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
-def test_sliding_columns_use_slip_at_centres() -> None:
+def test_slipping_edges_have_one_position_of_slip() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
-    computed = RollingCells.of(
-        pressure, pressure, None, LeadingEdges(np.array([SLIDING_OFFSET, SLIDING_OFFSET, np.nan]), pressure)
-    )
+    computed = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
     assert not dependent_cells(computed)
-    assert (computed.offset[computed.unknown[0] < 2] == SLIDING_OFFSET).all()
+    assert (computed.offset[computed.unknown[0] < 2] == SLIPPING_OFFSET).all()
     assert computed.offset[computed.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 
@@ -160,15 +156,14 @@ def test_displacement_is_constant_beyond_last_cell() -> None:
     assert computed.derivative(displacement, 0.5) == pytest.approx(computed.derivative(complete, 0.5))
 
 
-def test_offset_is_constant_where_leading_cell_slips() -> None:
+def test_leading_cell_of_each_column_slips_or_sticks() -> None:
     loaded = np.ones((4, 5), dtype=bool)
     loaded[:, -1] = False
     sticks = np.zeros((4, 5), dtype=bool)
     sticks[0, :4] = True
     sticks[1, :3] = True
     sticks[2, 1] = True
-    expected = [np.nan, SLIPPING_OFFSET, SLIPPING_OFFSET, SLIDING_OFFSET]
-    assert find_constant_offsets(sticks, loaded) == pytest.approx(expected, nan_ok=True)
+    assert find_slipping_edges(sticks, loaded).tolist() == [False, True, True, True]
 
 
 @pytest.mark.parametrize("creepage", [0.4, 0.7])
