@@ -29,7 +29,7 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     assert expected.change < 1e-3
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
-    monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
+    monkeypatch.setattr(tractions, "SLIPPING_OFFSET", 0.5)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
     motion = Rolling(force_y=LOAD_FRACTION * FRICTION * LOAD)

@@ -1,8 +1,8 @@
 """Contact of a case on columns that are refined until peak and end pressures are accurate, with stick and slip.
 
 The tractions are solved on the columns of the normal contact and half of its cells along y, then on all, and on twice
-as many until forces and creepages change by less than the accuracy. Their error is of first order in the cells at most,
-so the last change bounds the error of the cells along y; the error of the columns is added.
+as many until forces and creepages change by less than the accuracy. Their error is of first order in the cells at most:
+the last change estimates it, and the errors of the columns and of the leading edge of unlike bodies are added.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, without_error
 from contactstudy.bodies import hertz
+from contactstudy.bodies.material import dundurs_parameter
 from contactstudy.bodies.models import Body, BodyWithFreeEnds
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.case.case import MAX_HALF_WIDTH, MIN_HALF_WIDTH, Case
@@ -391,6 +392,10 @@ COLUMN_ERROR_FACTOR = 0.5
 """Error of the columns, over the least error of the pressure; relative to full sliding's force and moment, and to work
 and creepages themselves. Accuracy: without this error one in ten of the stated errors was too small."""
 
+EDGE_ERROR_FACTOR = 1.0
+"""Error of the leading edge of unlike bodies in rolling, times the cells across the contact, over Dundurs' beta and the
+scale of a value. Accuracy: twice the root mean square over positions of the cells."""
+
 MAX_COARSE_STEPS = 60
 """Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
 active sets cycle on these cells, and converge on finer cells."""
@@ -417,12 +422,15 @@ def refine_tractions(
         if accurate or rows >= max_rows:
             break
         rows, previous = 2 * rows, contact
-    column_error = COLUMN_ERROR_FACTOR * normal.refined.least_error
+    column_error, edge_error = COLUMN_ERROR_FACTOR * normal.refined.least_error, 0.0
+    if isinstance(motion, Rolling):
+        cells_across = float((contact.contact.pressure > 0).sum(axis=1).max())
+        edge_error = EDGE_ERROR_FACTOR * abs(dundurs_parameter(case.body.material, case.roller.material)) / cells_across
     errors = xr.Dataset()
     for name, scale in scales.items():
         # A force or a moment may be a small difference of large parts; work and rigid motions are not.
         size = scale if name in RESULTANTS.values() else min(scale, abs(values[name]))
-        errors[f"{name}_error"] = changes[name] + column_error * size
+        errors[f"{name}_error"] = changes[name] + column_error * size + edge_error * scale
         if not accurate:
             errors[f"{name}_error"].attrs["comment"] = (
                 "above the accuracy: the largest number of cells along y was reached"

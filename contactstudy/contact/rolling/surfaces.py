@@ -49,9 +49,9 @@ class Surfaces(NamedTuple):
 
 
 class LeadingEdges(NamedTuple):
-    """Sliding columns and pressure that determine the positions of the slip in the cells of a rolling contact."""
+    """Slip and pressure that determine the positions of the slip in the cells of a rolling contact."""
 
-    slides_fully: BoolArray  # (x): columns without sticking cells
+    slips: BoolArray  # (x): columns whose leading cell slips
     pressure: FloatArray  # (x, y): pressure whose extrapolation to zero is the leading edge, Pa
 
 

@@ -37,8 +37,8 @@ from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 
 MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
 EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
-DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
-"""Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
+DEPENDENT_OFFSET, SLIPPING_OFFSET = 0.475, 1 / 3
+"""Position b of the slip in columns with a dependent or slipping leading cell. Accuracy."""
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
 LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not loaded, more is another loaded cell. Accuracy.
 
@@ -71,7 +71,7 @@ class RollingCells:
         leading: LeadingEdges | None = None,
     ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
-        slides_fully, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
+        slips_at_edge, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
         loaded: BoolArray = (pressure > 0) & (bound > 0)
         leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
         offset = np.full(pressure.shape, EDGE_OFFSET + 1.0)
@@ -79,8 +79,8 @@ class RollingCells:
         for row, last_column in leading_cells:
             unloaded = np.flatnonzero(~loaded[row, : last_column + 1])
             first = int(unloaded[-1]) + 1 if unloaded.size else 0
-            if slides_fully[row]:
-                offset[row, first : last_column + 1] = SLIDING_OFFSET
+            if slips_at_edge[row]:
+                offset[row, first : last_column + 1] = SLIPPING_OFFSET
                 continue
             if last_column + 1 - first < MIN_CELLS:
                 continue
@@ -207,11 +207,18 @@ def solve_tractions(
         if not previous.converged:
             return _with_mean_slip(previous, surfaces, displacements)
         steps = previous.steps
-    # Sliding columns and edges that each pressure of a coupled contact determined anew would alternate.
-    leading = previous.leading or LeadingEdges(np.asarray(~previous.sticks.any(axis=1)), pressure)
+    # Slipping edges that each pressure of a coupled contact determined anew would alternate.
+    leading = previous.leading or LeadingEdges(find_slipping_edges(previous.sticks, bound > 0), pressure)
     cells = RollingCells.of(pressure, bound, weights, leading)
     tractions = solve(cells, settings.tolerance, guess_from_last(previous, cells, motion.modes))
     return replace(_with_mean_slip(tractions, surfaces, displacements), steps=steps + tractions.steps, leading=leading)
+
+
+def find_slipping_edges(sticks: BoolArray, loaded: BoolArray) -> BoolArray:
+    """Whether the leading cell of each column slips (x)."""
+    # At a sticking edge the traction begins as a square root, which eq. (44a) corrects; a slipping one has its bound.
+    last_columns = loaded.shape[1] - 1 - loaded[:, ::-1].argmax(axis=1)
+    return ~sticks[np.arange(last_columns.size), last_columns]
 
 
 def _coulomb_problem(

@@ -167,15 +167,17 @@ def test_changes_are_relative_to_full_sliding() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "accuracy", "tried"), [([0.5], 0.6, 2), ([0.5, 0.3, 0.1], 0.2, 4), ([0.9] * 9, 0.1, 9)]
+    ("changes", "accuracy", "tried", "roller"),
+    [([0.5], 0.6, 2, STEEL), ([0.5], 0.6, 2, None), ([0.5, 0.3, 0.1], 0.2, 4, STEEL), ([0.9] * 9, 0.1, 9, STEEL)],
 )
 def test_cells_double_until_changes_meet_accuracy(
-    changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
+    changes: list[float], accuracy: float, tried: int, roller: Material | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The changes are over full sliding's force; prescribed values may change; the stated error is the last change
-    plus the error of the columns.
+    plus the errors of the columns and, with a rigid roller, of the leading edge on the only cell across the contact.
     """
-    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3))
+    bodies = replace(STEEL_CASE, roller=replace(STEEL_CASE.roller, material=roller))
+    case = replace(bodies, motion=Rolling(longitudinal_creepage=1e-3))
     contact = make_contact(case, 1e9, x=0.0, y=1e-3, spin=0.0)
     full, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
 
@@ -197,7 +199,8 @@ def test_cells_double_until_changes_meet_accuracy(
     assert rows == [cells // 2 * 2**index for index in range(min(tried, maximum))]
     assert ("comment" not in errors.force_x_error.attrs) == (tried < 9)
     of_columns = COLUMN_ERROR_FACTOR * settled.refined.least_error
-    assert float(errors.force_x_error) == pytest.approx(full * (changes[len(rows) - 2] + of_columns))
+    of_edge = 0.0 if roller else 0.5 * (1 - 2 * STEEL.poisson) / (1 - STEEL.poisson)
+    assert float(errors.force_x_error) == pytest.approx(full * (changes[len(rows) - 2] + of_columns + of_edge))
     assert "longitudinal_creepage_error" not in errors
 
 

@@ -5,10 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.rolling_force import middle_force
 from contactstudy import Rolling
 from contactstudy.contact.rolling import tractions
 from contactstudy.contact.rolling.surfaces import LeadingEdges
-from contactstudy.contact.rolling.tractions import DEPENDENT_OFFSET, EDGE_OFFSET, RollingCells, averaging_weights
+from contactstudy.contact.rolling.tractions import (
+    DEPENDENT_OFFSET,
+    EDGE_OFFSET,
+    SLIPPING_OFFSET,
+    RollingCells,
+    averaging_weights,
+    find_slipping_edges,
+)
 from contactstudy.verification.tribology import material, rolling_ellipse
 
 
@@ -97,7 +105,7 @@ def test_half_cell_offset_matches_published_creepage(monkeypatch: pytest.MonkeyP
     """
     between_neighbours = 0.5 - EDGE_OFFSET
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: between_neighbours)
-    monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
+    monkeypatch.setattr(tractions, "SLIPPING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
     computed = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
@@ -132,11 +140,11 @@ def test_single_cell_ahead_is_separate_contact() -> None:
     assert computed.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
-def test_sliding_columns_use_slip_at_centres() -> None:
+def test_slipping_edges_have_one_position_of_slip() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
     computed = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
     assert not dependent_cells(computed)
-    assert (computed.offset[computed.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
+    assert (computed.offset[computed.unknown[0] < 2] == SLIPPING_OFFSET).all()
     assert computed.offset[computed.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 
@@ -146,3 +154,21 @@ def test_displacement_is_constant_beyond_last_cell() -> None:
     computed = RollingCells.of(pressure, pressure)
     complete = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
     assert computed.derivative(displacement, 0.5) == pytest.approx(computed.derivative(complete, 0.5))
+
+
+def test_leading_cell_of_each_column_slips_or_sticks() -> None:
+    loaded = np.ones((4, 5), dtype=bool)
+    loaded[:, -1] = False
+    sticks = np.zeros((4, 5), dtype=bool)
+    sticks[0, :4] = True
+    sticks[1, :3] = True
+    sticks[2, 1] = True
+    assert find_slipping_edges(sticks, loaded).tolist() == [False, True, True, True]
+
+
+@pytest.mark.parametrize("creepage", [0.4, 0.7])
+def test_force_of_unlike_bodies_depends_little_on_position_of_cells(creepage: float) -> None:
+    """At the leading edge of a rigid roller the pressure itself makes the surfaces slip."""
+    forces = [middle_force(creepage, 32, position) for position in (-0.5, -0.25, 0.0, 0.25)]
+    assert np.ptp(forces) < 0.012
+    assert np.mean(forces) == pytest.approx(middle_force(creepage, 128, 0.0), abs=0.008)
