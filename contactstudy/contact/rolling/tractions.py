@@ -218,7 +218,7 @@ def find_slipping_edges(sticks: BoolArray, loaded: BoolArray) -> BoolArray:
     """Whether the leading cell of each column slips (x)."""
     # At a sticking edge the traction begins as a square root, which eq. (44a) corrects; a slipping one has its bound.
     last_columns = loaded.shape[1] - 1 - loaded[:, ::-1].argmax(axis=1)
-    return ~sticks[np.arange(last_columns.size), last_columns]
+    return np.asarray(~sticks[np.arange(last_columns.size), last_columns])
 
 
 def _coulomb_problem(
