@@ -76,8 +76,8 @@ class FineCells:
         """The shape as a load."""
         if np.array_equal(self.load, self.shape):
             return self
-        key = ArrayKey(self.shape)
-        return share_fine_cells(key, key, self.grid, self.extent, self.image_sign, (self.first, self.count))
+        key, rows = ArrayKey(self.shape), {"first": self.first, "count": self.count}
+        return share_fine_cells(key, key, self.grid, self.extent, self.image_sign, **rows)
 
     @cached_property
     def _smooth(self) -> SmoothLoad:
@@ -233,13 +233,12 @@ def share_fine_cells(
     grid: Grid,
     extent: tuple[float, float],
     image_sign: int = 1,
-    rows: tuple[int, int] = (0, 0),
+    first: int = 0,
+    count: int = 0,
 ) -> FineCells:
-    """Fine cells that all points share; `rows` are the first cell along y and the number of cells."""
-    cells, (first, count) = (load.values, shape.values), rows
-    return FineCells(
-        load=cells[0], shape=cells[1], grid=grid, extent=extent, image_sign=image_sign, first=first, count=count
-    )
+    """Fine cells that all points share."""
+    arrays = {"load": load.values, "shape": shape.values}
+    return FineCells(**arrays, grid=grid, extent=extent, image_sign=image_sign, first=first, count=count)
 
 
 def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:

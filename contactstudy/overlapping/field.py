@@ -19,7 +19,7 @@ from contactstudy.arrays.grid import Points
 from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.equations import DECAY_LENGTHS, AuxiliaryLoads, EquationSet, real_product
+from contactstudy.overlapping.equations import DECAY_LENGTHS, AuxiliaryLoads, AxialModes, EquationSet, real_product
 from contactstudy.overlapping.problem import (
     EndProblem,
     LateralColumns,
@@ -27,7 +27,6 @@ from contactstudy.overlapping.problem import (
     View,
     lateral_columns,
     make_views,
-    split_by_parity,
 )
 from contactstudy.overlapping.quadrature import graded_interpolation
 from contactstudy.threads import one_blas_thread
@@ -120,9 +119,9 @@ def _sum_over_wavenumbers(
     problem: EndProblem, harmonics: Harmonics, point_sets: list[_FoldedPositions], reference: float
 ) -> list[dict[int, FloatArray]]:
     """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
-    counts = (len(problem.loads), harmonics.count)
+    counts, parities = (len(problem.loads), harmonics.count), problem.split_by_parity(problem.cell_loads)
     parity_fields = [
-        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in problem.parity_loads}
+        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parities}
         for points in point_sets
     ]
     y_stops = np.cumsum([points.y.size for points in point_sets])
@@ -159,7 +158,7 @@ class SolvedPanel(NamedTuple):
 @cached("auxiliary loads")
 def _solve_panel(problem: EndProblem, panel: LateralPanel, shortest: float) -> SolvedPanel | None:
     """Solve for the auxiliary loads of a problem within one panel; None if the panel needs no column."""
-    columns = lateral_columns(panel, problem.parity_loads, problem.grid)
+    columns = lateral_columns(panel, problem.split_by_parity(problem.cell_loads), problem.grid)
     return None if columns is None else _solve_columns(problem, columns, shortest)
 
 
@@ -223,8 +222,7 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
     """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
     (load,) = problem.loads
     folded = _FoldedPositions(problem, points)
-    cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
-    parity_loads = {0: cells} if np.isinf(problem.length) else split_by_parity(cells, problem.sign_x)
+    parity_loads = problem.split_by_parity(np.eye(problem.grid.cells_x))
     parities = np.repeat(list(parity_loads), problem.grid.cells_x)
     unit_loads = np.concatenate(list(parity_loads.values()), axis=1)[:, None, :]
 
@@ -260,7 +258,8 @@ def _amplitudes(
     amplitudes = [np.zeros((load_count, harmonics.count, x.size, z.size, *shape)) for x, z in points]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
     for view, loads in views:
-        rows, distance, cosine, sine = view.positions(np.concatenate([x for x, _ in points]))
+        rows, distance = view.positions(np.concatenate([x for x, _ in points]))
+        cosine, sine = view.modes.cosine(distance), view.modes.sine(distance)
         for amplitude, (_, z), (start, stop) in zip(amplitudes, points, pairwise(starts), strict=True):
             in_set = (rows >= start) & (rows < stop)
             if not in_set.any():
@@ -333,14 +332,7 @@ def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) ->
     # below.
     nu, modes, depth = loads.poisson, loads.modes, loads.depth
     lateral, kappa, tau, along_z = _face_waves(loads, z)
-    # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
-    decay, x_times_decay = _decay_from_end(x, kappa, tau)
-    even_growth = odd_growth = x_times_decay
-    if modes.parity:
-        far_decay, x_times_decay = _decay_from_end(modes.length - x, kappa, tau)
-        decay += modes.parity * far_decay
-        even_growth = even_growth + modes.parity * x_times_decay
-        odd_growth = odd_growth - modes.parity * x_times_decay
+    (decay, even_growth), (_, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
     potential = (1 - 2 * nu) * decay - even_growth
     lateral_part = 2 * nu * decay
     # eqs. (11) and (12) with the waves of eq. (25): xx, yy, zz, xy from cosines along z, xz and yz from sines
@@ -362,13 +354,21 @@ def _face_waves(loads: AuxiliaryLoads, z: FloatArray) -> tuple[FloatArray, Compl
     return lateral, kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
 
 
-def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
-    scaled_distance = np.outer(distance, kappa)
-    decay = np.exp(-scaled_distance)
-    scaled_distance += tau
-    scaled_distance *= decay
-    return decay, scaled_distance
+def _sums_over_ends(
+    modes: AxialModes, x: FloatArray, kappa: ComplexArray, tau: ComplexArray
+) -> list[tuple[ComplexArray, ComplexArray]]:
+    """Sum ``exp(-X)`` and ``(tau + X) exp(-X)`` (x, depth) over the ends, for even and for odd components."""
+    waves = []
+    for distance in (x, modes.length - x) if modes.parity else (x,):
+        scaled_distance = np.outer(distance, kappa)
+        decay = np.exp(-scaled_distance)
+        scaled_distance += tau
+        scaled_distance *= decay
+        waves.append((decay, scaled_distance))
+    if not modes.parity:
+        return 2 * waves
+    (decay, growth), (far_decay, far_growth) = waves
+    return [(decay + sign * far_decay, growth + sign * far_growth) for sign in (modes.parity, -modes.parity)]
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
@@ -402,18 +402,12 @@ def _displacement_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArr
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
     nu, modes, depth = loads.poisson, loads.modes, loads.depth
     lateral, kappa, tau, along_z = _face_waves(loads, z)
-    along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
-    ends = [(x, 1, 1)]
-    if modes.parity:
-        ends.append((modes.length - x, modes.parity, -modes.parity))
-    for distance, even_sign, odd_sign in ends:
-        scaled_distance = np.outer(distance, kappa)
-        decay = np.exp(-scaled_distance)
-        potential = (1 - 2 * nu - tau - scaled_distance) * decay  # eq. (10)
-        along_x[0] -= odd_sign * (tau + scaled_distance + 2 * (1 - nu)) * decay / kappa
-        along_x[1] -= even_sign * lateral / kappa**2 * potential
-        along_x[2] += even_sign * depth / kappa**2 * potential
-    along_x[2] *= -1j
+    (decay, growth), (odd_decay, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
+    potential = (1 - 2 * nu) * decay - growth  # eq. (10)
+    along_x = np.empty((3, x.size, depth.size), np.complex128)
+    np.divide(odd_growth + 2 * (1 - nu) * odd_decay, -kappa, out=along_x[0])
+    np.multiply(-lateral / kappa**2, potential, out=along_x[1])
+    np.multiply(-1j * depth / kappa**2, potential, out=along_x[2])
     return _field_of_face_load(loads, along_x, along_z)
 
 

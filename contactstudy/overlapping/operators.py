@@ -201,8 +201,8 @@ class OverlappingOperators:
 
         def matrix(band: Band) -> FloatArray:
             values = np.zeros((self.positions.x.size, band.system.depth.size))
-            viewed = band.view.positions(self.positions.x)
-            values[viewed.rows] = np.real(viewed.cosine.T @ band.system.top) * band.system.scale
+            rows, distance = band.view.positions(self.positions.x)
+            values[rows] = np.real(band.view.modes.cosine(distance).T @ band.system.top) * band.system.scale
             return values
 
         return SumOperator([matrix(band) for band in self.bands], self.positions.y.size)

@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -300,16 +299,10 @@ class EndProblem:
             replace(self, loads=loads, resolution=self.resolution.for_loads(loads)) for loads in directions if loads
         ]
 
-    @cached_property
-    def parity_loads(self) -> dict[int, FloatArray]:
-        """Load on the columns (column, y), between two ends its even (1) and odd (-1) parts."""
-        column_loads = self.cell_loads[self.cell_of_column]
+    def split_by_parity(self, cell_loads: FloatArray) -> dict[int, FloatArray]:
+        """Return a load on the columns (column, y), between two ends its even (1) and odd (-1) parts."""
+        column_loads = cell_loads[self.cell_of_column]
         return {0: column_loads} if np.isinf(self.length) else split_by_parity(column_loads, self.sign_x)
-
-    @property
-    def added_nbytes(self) -> int:
-        """Memory of the parts of both problems, bytes."""
-        return 8 * self.cell_loads.nbytes
 
     @property
     def corner_offset(self) -> float:
@@ -360,15 +353,6 @@ def split_by_parity(cell_loads: FloatArray, sign_x: int) -> dict[int, FloatArray
     }
 
 
-class ViewedPositions(NamedTuple):
-    """Positions within reach: their indices, distances from the end, and waves (wavenumber, position)."""
-
-    rows: IntArray
-    x: FloatArray
-    cosine: ComplexArray
-    sine: ComplexArray
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class View:
     """A load in one set of axial modes."""
@@ -378,12 +362,11 @@ class View:
     columns: IntArray  # indices of the columns
     end: float  # position of the end from which distances are counted, metres
 
-    def positions(self, x: FloatArray) -> ViewedPositions:
-        """Positions within reach among `x`."""
+    def positions(self, x: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return indices of the positions within reach among `x`, and their distances from the end."""
         distance = np.abs(x - self.end)
         rows = np.flatnonzero(distance <= self.modes.reach)
-        distance = distance[rows]
-        return ViewedPositions(rows, distance, self.modes.cosine(distance), self.modes.sine(distance))
+        return rows, distance[rows]
 
 
 def make_views(problem: EndProblem, load: LateralColumns, shortest: float) -> list[View]:
