@@ -65,12 +65,7 @@ def superpose(
 
 @cached("end problems")
 def end_problem(
-    free_ends: FreeEnds,
-    poisson: float,
-    load: ArrayKey,
-    shape: ArrayKey | None,
-    grid: Grid,
-    loads: tuple[Load, ...],
+    free_ends: FreeEnds, poisson: float, load: ArrayKey, shape: ArrayKey | None, grid: Grid, loads: tuple[Load, ...]
 ) -> EndProblem:
     """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
     finest, cell_loads = finest_cell(grid), load.values

@@ -126,9 +126,8 @@ def _sum_over_wavenumbers(
     ]
     y_stops = np.cumsum([points.y.size for points in point_sets])
     y = np.concatenate([points.y for points in point_sets])
-    for panel, columns, indices, amplitudes in _panel_amplitudes(
-        problem, harmonics, point_sets, reference, solve=_solve_panel
-    ):
+    panels = _panel_amplitudes(problem, harmonics, point_sets, reference, _solve_panel)
+    for panel, columns, indices, amplitudes in panels:
         waves = panel.waves(y)
         for parity in columns.along_y:
             for i, load in enumerate(problem.loads):
@@ -185,7 +184,6 @@ def _panel_amplitudes(
     harmonics: Harmonics,
     point_sets: list[_FoldedPositions],
     reference: float,
-    *,
     solve: Callable[[EndProblem, LateralPanel, float], SolvedPanel | None],
 ) -> Iterator[tuple[LateralPanel, LateralColumns, list[tuple[IntArray, IntArray]], list[FloatArray]]]:
     """Yield panels, columns, indices of x and z within reach, and amplitudes as `_amplitudes`, per set of points."""
@@ -201,10 +199,7 @@ def _panel_amplitudes(
         if solved_panel is None:
             continue
         is_near = [panel.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
-        indices = [
-            (np.flatnonzero(is_near_set.any(axis=1)), np.flatnonzero(is_near_set.any(axis=0)))
-            for is_near_set in is_near
-        ]
+        indices = [(np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))) for near in is_near]
         axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(point_sets, indices, strict=True)]
         yield panel, solved_panel.columns, indices, _amplitudes(solved_panel, harmonics, axes, len(problem.loads))
 
@@ -230,9 +225,8 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads, parities=parities)
         return _solve_columns(problem, columns, shortest)
 
-    for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(
-        problem, harmonics, [folded], reference, solve=solve
-    ):
+    panels = _panel_amplitudes(problem, harmonics, [folded], reference, solve)
+    for panel, _, ((rows, depths),), (amplitudes,) in panels:
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
         for parity in parity_loads:
@@ -390,10 +384,7 @@ def _displacement_of_equivalent_load(
     compressibility = 1 - 2 * nu
     # eqs. (10) and (13)
     sine_terms = {0: (-compressibility * axial / k**2, axial / k)}
-    cosine_terms = {
-        1: (compressibility * lateral / k**2, -lateral / k),
-        2: (2 * (1 - nu) / k, np.ones_like(k)),
-    }
+    cosine_terms = {1: (compressibility * lateral / k**2, -lateral / k), 2: (2 * (1 - nu) / k, np.ones_like(k))}
     return _field_of_equivalent_load(loads, z, k, [(cosine, cosine_terms), (sine, sine_terms)])
 
 

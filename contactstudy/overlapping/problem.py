@@ -180,10 +180,7 @@ def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray],
     if not along_x:
         return None
     return LateralColumns(
-        nodes=panel.nodes,
-        along_x=np.concatenate(along_x, axis=2),
-        parities=np.concatenate(parities),
-        along_y=along_y,
+        nodes=panel.nodes, along_x=np.concatenate(along_x, axis=2), parities=np.concatenate(parities), along_y=along_y
     )
 
 
@@ -294,10 +291,8 @@ class EndProblem:
     @cached_property
     def by_mirror_sign(self) -> list[EndProblem]:
         """Problem of the loads that images keep, and problem of the loads that images reverse."""
-        directions = (tuple(load for load in self.loads if load.sign_x == sign) for sign in (1, -1))
-        return [
-            replace(self, loads=loads, resolution=self.resolution.for_loads(loads)) for loads in directions if loads
-        ]
+        groups = (tuple(load for load in self.loads if load.sign_x == sign) for sign in (1, -1))
+        return [replace(self, loads=loads, resolution=self.resolution.for_loads(loads)) for loads in groups if loads]
 
     def split_by_parity(self, cell_loads: FloatArray) -> dict[int, FloatArray]:
         """Return a load on the columns (column, y), between two ends its even (1) and odd (-1) parts."""
