@@ -225,8 +225,7 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads, parities=parities)
         return _solve_columns(problem, columns, shortest)
 
-    panels = _panel_amplitudes(problem, harmonics, [folded], reference, solve)
-    for panel, _, ((rows, depths),), (amplitudes,) in panels:
+    for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(problem, harmonics, [folded], reference, solve):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
         for parity in parity_loads:
