@@ -8,6 +8,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
+from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import Positions, field_positions
@@ -79,19 +80,19 @@ def displacement_under(
     body: Body, loads: Loads, grid: Grid, points: Points, shape: FloatArray | None = None
 ) -> FloatArray:
     """Displacements (3, x, y, z), metres; `shape` as in `stresses_at`."""
-    material = body.material
+    material, shape_key = body.material, None if shape is None else ArrayKey(shape)
 
-    def unit_fields(directions: tuple[Load, ...], cell_loads: FloatArray) -> dict[Load, list[FloatArray]]:
+    def unit_fields(directions: tuple[Load, ...], cell_loads: ArrayKey) -> dict[Load, list[FloatArray]]:
         fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
         for term in body.terms:
             length, reference = term.extent[1] - term.extent[0], reference_distance(term.extent)
             end_parts: dict[Load, FloatArray] = {}
-            if term.free_ends and cell_loads.any():
-                problem = end_problem(term.free_ends, material.poisson, cell_loads, shape, grid, loads=directions)
+            if term.free_ends and cell_loads.values.any():
+                problem = end_problem(term.free_ends, material.poisson, cell_loads, shape_key, grid, loads=directions)
                 (end_parts,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
-                field = half_space_field(cell_loads, influence, grid, points, extent=term.extent, shape=shape)
+                field = half_space_field(cell_loads.values, influence, grid, points, extent=term.extent, shape=shape)
                 field = kernel_factor(material) * field
                 if load in end_parts:
                     field += end_parts[load] / (2 * material.shear_modulus)

@@ -12,6 +12,7 @@ from contactstudy import checks
 from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
+from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import end_problem, prescribed_loads
@@ -101,7 +102,7 @@ def overlapping_operators(
     if free_ends is None:
         return None
     cell_loads = np.zeros(grid.shape) if cell_loads is None else cell_loads
-    problem = end_problem(free_ends, body.material.poisson, cell_loads, None, grid, loads=(load,))
+    problem = end_problem(free_ends, body.material.poisson, ArrayKey(cell_loads), None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
     # Two exact ends leave a part of an eccentric load without stress.
     is_relative = np.isfinite(free_ends.length) and not free_ends.mirrored_once

@@ -12,11 +12,11 @@ from contactstudy import checks
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid
 from contactstudy.arrays.variables import in_si, labelled_cells
 from contactstudy.bodies.models import Body, FreeEnds
-from contactstudy.cache import ArrayKey
+from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.positions import Labels
-from contactstudy.kernels.fine_cells import FineCells
+from contactstudy.kernels.fine_cells import share_fine_cells
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.problem import EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
@@ -46,7 +46,7 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
 
 
 def superpose(
-    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
+    loads: Loads, unit_fields: Callable[[tuple[Load, ...], ArrayKey], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
     """Sum the fields of all loads; one call of `unit_fields` serves all loads with the same distribution."""
     groups: dict[ArrayKey, list[Load]] = {}
@@ -54,7 +54,7 @@ def superpose(
         groups.setdefault(ArrayKey(cell_loads), []).append(load)
     fields: dict[Load, Sequence[FloatArray]] = {}
     for distribution, directions in groups.items():
-        fields |= unit_fields(tuple(directions), distribution.values)
+        fields |= unit_fields(tuple(directions), distribution)
     first_load, *other_loads = loads
     totals = [np.multiply(loads[first_load].factor, field, order="K") for field in fields[first_load]]
     for load in other_loads:
@@ -63,18 +63,14 @@ def superpose(
     return totals
 
 
+@cached("end problems")
 def end_problem(
-    free_ends: FreeEnds,
-    poisson: float,
-    cell_loads: FloatArray,
-    shape: FloatArray | None,
-    grid: Grid,
-    loads: tuple[Load, ...],
+    free_ends: FreeEnds, poisson: float, load: ArrayKey, shape: ArrayKey | None, grid: Grid, loads: tuple[Load, ...]
 ) -> EndProblem:
     """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
-    finest = finest_cell(grid)
+    finest, cell_loads = finest_cell(grid), load.values
     if shape is not None:
-        cell_loads, grid = FineCells(load=cell_loads, shape=shape, grid=grid, extent=(0.0, free_ends.length)).end_load()
+        cell_loads, grid = share_fine_cells(load, shape, grid, (0.0, free_ends.length)).end_load()
     return EndProblem(
         length=free_ends.length,
         poisson=poisson,
@@ -89,8 +85,7 @@ def end_problem(
 
 def unit_problem(free_ends: FreeEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
     """Problem of the ends for unit loads on the cells along x."""
-    (problem,) = end_problem(free_ends, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).split_by_mirror_sign()
-    return problem
+    return end_problem(free_ends, poisson, ArrayKey(np.zeros(grid.shape)), None, grid, loads=(load,)).by_mirror_sign[0]
 
 
 UNIFORM = "uniform"  # value of `inside_cells` for loads that are uniform in each cell

@@ -123,11 +123,11 @@ def stresses_at(
     point_keys = tuple(ArrayKey(axis) for points in point_sets for axis in points)
     shape_key = None if shape is None else ArrayKey(shape)
 
-    def unit_fields(directions: tuple[Load, ...], cell_loads: FloatArray) -> dict[Load, list[FloatArray]]:
-        keys = {load: (body, grid, load, ArrayKey(cell_loads), point_keys, shape_key) for load in directions}
+    def unit_fields(directions: tuple[Load, ...], cell_loads: ArrayKey) -> dict[Load, list[FloatArray]]:
+        keys = {load: (body, grid, load, cell_loads, point_keys, shape_key) for load in directions}
         fields: dict[Load, list[FloatArray]] = {load: recall("stress fields", key) or [] for load, key in keys.items()}
         missing = tuple(load for load, field in fields.items() if not field)
-        missing_fields = _unit_stress(body, grid, missing, cell_loads, point_sets=point_sets, shape=shape)
+        missing_fields = _unit_stress(body, grid, missing, cell_loads, point_sets=point_sets, shape=shape_key)
         for load, field in missing_fields.items():
             fields[load] = retain("stress fields", keys[load], field)
         return fields
@@ -139,23 +139,25 @@ def _unit_stress(
     body: Body,
     grid: Grid,
     loads: tuple[Load, ...],
-    cell_loads: FloatArray,
+    cell_loads: ArrayKey,
     *,
     point_sets: Sequence[Points],
-    shape: FloatArray | None,
+    shape: ArrayKey | None,
 ) -> dict[Load, list[FloatArray]]:
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
-    poisson = body.material.poisson
+    poisson, shape_values = body.material.poisson, None if shape is None else shape.values
     fields: dict[Load, list[FloatArray]] = {}
     for term in body.terms:
         end_parts: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
-        if term.free_ends and cell_loads.any() and loads:
+        if term.free_ends and cell_loads.values.any() and loads:
             problem = end_problem(term.free_ends, poisson, cell_loads, shape, grid, loads=loads)
             end_parts = end_fields(problem, STRESS, point_sets, reference_distance(term.extent))
         for load in loads:
             term_fields, influence = [], stress_influence(load, poisson)
             for points, end_part in zip(point_sets, end_parts, strict=True):
-                field = half_space_field(cell_loads, influence, grid, points, extent=term.extent, shape=shape)
+                field = half_space_field(
+                    cell_loads.values, influence, grid, points, extent=term.extent, shape=shape_values
+                )
                 if load in end_part:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)

@@ -37,6 +37,7 @@ from contactstudy.kernels.fine_cells import (
     add_images,
     mirror_edges,
     resolved_columns,
+    share_fine_cells,
 )
 from contactstudy.kernels.images import Influence, far_images, interpolation_points
 
@@ -207,9 +208,7 @@ def split_columns(
         first, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
         fine_cells, is_refined = None, np.zeros(z.size, bool)
     else:
-        fine_cells = FineCells(
-            load=cell_loads.values, shape=shape.values, grid=grid, extent=extent, image_sign=image_sign
-        )
+        fine_cells = share_fine_cells(cell_loads, shape, grid, extent, image_sign)
         first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
     lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
 

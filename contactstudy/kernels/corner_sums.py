@@ -77,7 +77,6 @@ class Layer:
         self.z = z
         # Distances at which corner functions are evaluated, and the distance and the sign of each offset.
         self.distances, self._indices, self._signs = fold_offsets(offsets, offsets[1] - offsets[0])
-        self._folding_matrices: dict[int, FloatArray] = {}
         self.edges = edges  # edges along y of fine cells; None for the grid's cells
         self.fine_per_cell = fine_per_cell  # fine cells per cell of the layer; the cell carries their moments
 
@@ -107,13 +106,19 @@ class Layer:
     def fold_jumps(self, jumps: FloatArray) -> FloatArray:
         """Sum jumps (edge, corner) over both sides of 0: array (edge and distance, point and parity)."""
         count, starts = jumps.shape[1], self.offset_indices
-        if count not in self._folding_matrices:
-            corners, matrix = np.arange(count), np.zeros((count, self.distances.size, starts.size, 2))
-            for point, start in enumerate(starts.tolist()):
-                matrix[corners, self._indices[start : start + count], point, 0] = 1.0
-                matrix[corners, self._indices[start : start + count], point, 1] = self._signs[start : start + count]
-            self._folding_matrices[count] = matrix.reshape(count, -1)
-        return (jumps @ self._folding_matrices[count]).reshape(-1, 2 * starts.size)
+        folded = np.zeros((starts.size, 2, jumps.shape[0], self.distances.size))
+        for (even, odd), start in zip(folded, starts.tolist(), strict=True):
+            indices = self._indices[start : start + count]
+            negative_count = int((self._signs[start : start + count] < 0).sum())
+            if negative_count:
+                before = slice(indices[negative_count - 1], indices[0] + 1)
+                even[:, before] = jumps[:, negative_count - 1 :: -1]
+                odd[:, before] = -even[:, before]
+            if negative_count < count:
+                behind = slice(indices[negative_count], indices[-1] + 1)
+                even[:, behind] += jumps[:, negative_count:]
+                odd[:, behind] += jumps[:, negative_count:]
+        return folded.reshape(2 * starts.size, -1).T
 
 
 def midpoint_cells(aligned: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
@@ -130,7 +135,9 @@ class Jumps:
 
     def __init__(self, edges: FloatArray, loads: FloatArray, layer: Layer) -> None:
         self.layer, self.min_width = layer, float(np.diff(edges).min())
-        jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
+        padded = np.zeros((loads.shape[0] + 2, loads.shape[1] + 2))
+        padded[1:-1, 1:-1] = loads
+        jumps = np.diff(np.diff(padded, axis=0), axis=1)
         is_loaded = jumps.any(axis=1)
         self.edges, values = edges[is_loaded], jumps[is_loaded, ::-1]  # (edge, corner), backwards along y
         starts = layer.offset_indices

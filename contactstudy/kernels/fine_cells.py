@@ -8,12 +8,13 @@ not depend on the load, and the field is linear in the load.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import Array, BoolArray, FloatArray, store
 from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, moment_loads
 
@@ -49,6 +50,11 @@ class FineCells:
             first = int(loaded_rows[0]) - SPARE_CELLS
             store(self, first=first, count=int(loaded_rows[-1]) + 1 + SPARE_CELLS - first)
 
+    @property
+    def added_nbytes(self) -> int:
+        """Memory of the load's shape and moments, bytes."""
+        return 20 * self.load.nbytes
+
     @cached_property
     def y_edges(self) -> FloatArray:
         """Edges of the cells along y, metres."""
@@ -68,7 +74,10 @@ class FineCells:
     @cached_property
     def shape_cells(self) -> FineCells:
         """The shape as a load."""
-        return self if np.array_equal(self.load, self.shape) else replace(self, load=self.shape)
+        if np.array_equal(self.load, self.shape):
+            return self
+        key, rows = ArrayKey(self.shape), {"first": self.first, "count": self.count}
+        return share_fine_cells(key, key, self.grid, self.extent, self.image_sign, **rows)
 
     @cached_property
     def _smooth(self) -> SmoothLoad:
@@ -215,6 +224,21 @@ class FineCells:
         """Columns without images."""
         image_count = self.grid.cells_x if np.isfinite(self.extent[0]) else 0
         return columns[image_count : image_count + self.grid.cells_x]
+
+
+@cached("fine cells")
+def share_fine_cells(
+    load: ArrayKey,
+    shape: ArrayKey,
+    grid: Grid,
+    extent: tuple[float, float],
+    image_sign: int = 1,
+    first: int = 0,
+    count: int = 0,
+) -> FineCells:
+    """Fine cells that all points share."""
+    arrays = {"load": load.values, "shape": shape.values}
+    return FineCells(**arrays, grid=grid, extent=extent, image_sign=image_sign, first=first, count=count)
 
 
 def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:

@@ -185,8 +185,8 @@ class Influence:
         """Number of components."""
         return len(self.image_level)
 
-    def corner_at(self, depth: float) -> CornerFunction:
-        """Corner functions at one depth."""
+    def corner_at(self, depth: FloatArray | float) -> CornerFunction:
+        """Corner functions at one depth or several, as an array (depth, 1, ...)."""
         return lambda x, y: self.corner(x, y, depth, self.poisson)
 
     def kernel(self, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, depth: float) -> FloatArray:
@@ -221,11 +221,10 @@ def far_images(
     offsets, offset_indices = np.unique(np.subtract.outer(nodes_y, nodes_load).round(digits), return_inverse=True)
     offset_indices = offset_indices.reshape(nodes_y.size, nodes_load.size)
     field = np.zeros((influence.components, LOAD_POINTS, nodes_y.size, depths.size))
-    for depth in range(depths.size):
-        corner = influence.corner_at(float(depths[depth]))
-        kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
-        for row in range(nodes_y.size):
-            field[:, :, row, depth] = np.tensordot(kernel[..., offset_indices[row]], point_loads, axes=2)
+    corner, level = influence.corner_at(depths[:, None, None, None]), np.array(influence.image_level)[:, None]
+    kernel = images.influence(corner, offsets, grid.dy, level)
+    for row in range(nodes_y.size):
+        field[:, :, row] = np.tensordot(kernel[..., offset_indices[row]], point_loads, axes=2).swapaxes(1, 2)
     interpolation_x = images.interpolation(points.x - first_end)
     field = np.tensordot(field, interpolation_x, axes=(1, 1))
     if interpolation_z is not None:

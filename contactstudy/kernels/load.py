@@ -63,7 +63,7 @@ TINY = 1e-150  # least denominator, with a representable square, far below any o
 
 def _inverse_sinh_ratio(numerator: FloatArray, square: FloatArray, r: FloatArray) -> FloatArray:
     """``asinh(numerator / sqrt(square))`` with ``r**2 = numerator**2 + square``; finite where `square` vanishes."""
-    ratio = (np.abs(numerator) + r) / np.sqrt(np.maximum(square, TINY))
+    ratio = (np.abs(numerator) + r) * (1.0 / np.sqrt(np.maximum(square, TINY)))
     return np.copysign(np.log(np.maximum(ratio, 1.0)), numerator)
 
 
@@ -82,23 +82,24 @@ def _stack_components(*components: FloatArray) -> FloatArray:
 
 def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions (6, ...) of xx, yy, zz, xy, xz, yz; unit pressure has their second mixed difference."""
-    xx, yy = x * x, y * y
-    r = np.sqrt(xx + yy + z * z)
-    xy = x * y
-    v_z = -_angle(xy, z * r)
-    chi_xx = _angle(xy * (xx + yy), (r + z) * (r * xx + z * yy))
-    chi_yy = -v_z - chi_xx
-    along_x = 1.0 / np.maximum(r * (xx + z * z), TINY)
-    along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
-    v_xx, v_yy = -xy * along_x, -xy * along_y
-    compressibility = 1 - 2 * poisson
+    # Factors of two of the variables are products of small arrays; those of all three take most of the time.
+    xx, yy, zz, xy = x * x, y * y, np.square(z), x * y
+    squares = xx + yy
+    r = np.sqrt(squares + zz)
+    r_z, inverse_r = r + z, 1.0 / np.maximum(r, TINY)
+    along_x, along_y = z / np.maximum(xx + zz, TINY), z / np.maximum(yy + zz, TINY)
+    angle = np.arctan(xy * (1.0 / np.maximum(z, TINY)) * inverse_r)
+    chi_xx = _angle(xy * squares, r_z * (r * xx + z * yy))
+    xy_r = xy * inverse_r
+    term_x, term_y = xy_r * along_x, xy_r * along_y
+    compressibility, lateral_part = 1 - 2 * poisson, 2 * poisson * angle
     return _stack_components(
-        2 * poisson * v_z - compressibility * chi_xx - z * v_xx,
-        2 * poisson * v_z - compressibility * chi_yy - z * v_yy,
-        v_z + z * (v_xx + v_yy),
-        -compressibility * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
-        z * z * y * along_x,
-        z * z * x * along_y,
+        term_x - lateral_part - compressibility * chi_xx,
+        term_y - lateral_part - compressibility * (angle - chi_xx),
+        -(angle + term_x + term_y),
+        -compressibility * np.log(np.maximum(r_z, TINY)) - z * inverse_r,
+        z * along_x * y * inverse_r,
+        z * along_y * x * inverse_r,
     )
 
 
@@ -106,17 +107,18 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poiss
     """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`."""
     xx, yy, zz = x * x, y * y, np.square(z)
     r = np.sqrt(xx + yy + zz)
-    safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
-    v_y = _inverse_sinh_ratio(x, yy + zz, r)
-    along_y = 1.0 / np.maximum(r * (yy + zz), TINY)
-    x_r, y_r, term = x / r_z, y / r_z, z * x * along_y
+    inverse_r, inverse_r_z = 1.0 / np.maximum(r, TINY), 1.0 / np.maximum(r + z, TINY)
+    v_y, z_r = _inverse_sinh_ratio(x, yy + zz, r), z * inverse_r
+    term = (x / np.maximum(yy + zz, TINY)) * z_r
+    factor, z_term = (2 * poisson + z_r) * inverse_r_z, z * term
+    x_factor = x * factor
     return _stack_components(
-        2 * poisson * (v_y - x_r) - z / safe_r * x_r,
-        2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * term,
-        z * term,
-        _inverse_sinh_ratio(y, xx + zz, r) - 2 * poisson * y_r - z / safe_r * y_r,
-        -z / safe_r,
-        -_angle(x * y, z * r) + y * term,
+        2 * poisson * v_y - x_factor,
+        2 * v_y + x_factor - z_term,
+        z_term,
+        _inverse_sinh_ratio(y, xx + zz, r) - y * factor,
+        -z_r,
+        y * term - np.arctan(x * y * (1.0 / np.maximum(z, TINY)) * inverse_r),
     )
 
 

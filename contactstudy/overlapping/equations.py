@@ -256,16 +256,31 @@ def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> Float
 
 
 class AuxiliaryLoads(NamedTuple):
-    """Loads on the auxiliary bodies, for one wavenumber along y, per direction of the load."""
+    """Loads on the auxiliary bodies, for some wavenumbers along y, per direction of the load."""
 
     modes: AxialModes
-    lateral: float  # wavenumber ``k_y``, 1/m
+    lateral: FloatArray  # wavenumbers ``k_y`` (node), 1/m
     poisson: float
     equivalent: list[ComplexArray]
-    """Weighted spectra (wavenumber, column), before `cosine`, of the load added on H's top."""
-    depth: ComplexArray  # depth wavenumbers on their ray, where the face loads are an analytic function
+    """Weighted spectra (node, wavenumber, column), before `cosine`, of the load added on H's top."""
+    depth: ComplexArray
+    """Depth wavenumbers of one node after another on their rays, where the face loads are an analytic function."""
+    counts: list[int]  # number of depth wavenumbers of each node
     face_load: list[ComplexArray]
     """Normal stresses (depth, column) freed on the faces of V, times the quadrature's weights."""
+
+    @classmethod
+    def join(cls, node_loads: Sequence[AuxiliaryLoads]) -> AuxiliaryLoads:
+        """Join the loads of all nodes."""
+        return node_loads[0]._replace(
+            lateral=np.concatenate([loads.lateral for loads in node_loads]),
+            equivalent=[
+                np.concatenate(parts) for parts in zip(*(loads.equivalent for loads in node_loads), strict=True)
+            ],
+            depth=np.concatenate([loads.depth for loads in node_loads]),
+            counts=[loads.depth.size for loads in node_loads],
+            face_load=[np.concatenate(parts) for parts in zip(*(loads.face_load for loads in node_loads), strict=True)],
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -355,14 +370,15 @@ class EquationSet:
             if load is not Load.NORMAL:
                 mode_matrix, conjugate_matrix = self.ray_to_faces(load, depth)
                 face_load += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
-            equivalent_loads.append(equivalent)
+            equivalent_loads.append(equivalent[None])
             face_loads.append(weights[:, None] * face_load)
         return AuxiliaryLoads(
             modes=self.modes,
-            lateral=self.lateral,
+            lateral=np.array([self.lateral]),
             poisson=self.poisson,
             equivalent=equivalent_loads,
             depth=depth,
+            counts=[depth.size],
             face_load=face_loads,
         )
 

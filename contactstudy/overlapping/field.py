@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.grid import Points
-from contactstudy.cache import ArrayKey, recall, retain
+from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import DECAY_LENGTHS, AuxiliaryLoads, AxialModes, EquationSet, real_product
@@ -24,9 +24,9 @@ from contactstudy.overlapping.problem import (
     EndProblem,
     LateralColumns,
     LateralPanel,
+    View,
     lateral_columns,
     make_views,
-    split_by_parity,
 )
 from contactstudy.overlapping.quadrature import graded_interpolation
 from contactstudy.threads import one_blas_thread
@@ -36,10 +36,10 @@ POSITION_DIGITS = 12  # digits to which positions over the length are compared f
 
 @dataclass(frozen=True, kw_only=True)
 class Harmonics:
-    """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y."""
+    """A field of H under the equivalent load and of V under the face loads, for some wavenumbers along y."""
 
     of_equivalent_load: Callable[[AuxiliaryLoads, ComplexArray, ComplexArray, FloatArray], FloatArray]
-    """From auxiliary loads, cosine, sine (wavenumber, x) and depths to amplitudes (load, component, x, z, column)."""
+    """From auxiliary loads, cosine, sine (mode, x) and depths to amplitudes (load, component, x, z, node, column)."""
     of_face_load: Callable[[AuxiliaryLoads, FloatArray, FloatArray], FloatArray]
     """From auxiliary loads, distances from the end and depths to amplitudes of the same shape."""
     count: int  # number of components
@@ -107,39 +107,31 @@ def end_fields(
     # A field that grows with distance is relative to ``|y| = reference`` if `reference` is finite.
     fields: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
     with one_blas_thread():
-        for subproblem in problem.split_by_mirror_sign():
+        for subproblem in problem.by_mirror_sign:
             folded_sets = [_FoldedPositions(subproblem, points) for points in point_sets]
-            cell_loads = subproblem.cell_loads[subproblem.cell_of_column]
-            parity_loads = (
-                {0: cell_loads} if np.isinf(subproblem.length) else split_by_parity(cell_loads, subproblem.sign_x)
-            )
-            parity_fields = _sum_over_wavenumbers(subproblem, harmonics, folded_sets, reference, parity_loads)
+            parity_fields = _sum_over_wavenumbers(subproblem, harmonics, folded_sets, reference)
             for by_load, points, sums in zip(fields, folded_sets, parity_fields, strict=True):
                 by_load |= dict(zip(subproblem.loads, points.unfold(sums, harmonics.odd_along_x), strict=True))
     return fields
 
 
 def _sum_over_wavenumbers(
-    problem: EndProblem,
-    harmonics: Harmonics,
-    point_sets: list[_FoldedPositions],
-    reference: float,
-    parity_loads: Mapping[int, FloatArray],
+    problem: EndProblem, harmonics: Harmonics, point_sets: list[_FoldedPositions], reference: float
 ) -> list[dict[int, FloatArray]]:
     """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
-    counts = (len(problem.loads), harmonics.count)
+    counts, parities = (len(problem.loads), harmonics.count), problem.split_by_parity(problem.cell_loads)
     parity_fields = [
-        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parity_loads}
+        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parities}
         for points in point_sets
     ]
     y_stops = np.cumsum([points.y.size for points in point_sets])
     y = np.concatenate([points.y for points in point_sets])
-    for _, columns, indices, amplitudes in _panel_amplitudes(
-        problem, harmonics, point_sets, reference, lambda panel: lateral_columns(panel, parity_loads, problem.grid, y)
-    ):
-        for parity in parity_loads:
+    panels = _panel_amplitudes(problem, harmonics, point_sets, reference, _solve_panel)
+    for panel, columns, indices, amplitudes in panels:
+        waves = panel.waves(y)
+        for parity in columns.along_y:
             for i, load in enumerate(problem.loads):
-                even_waves, odd_waves = columns.synthesis(load, parity)
+                even_waves, odd_waves = columns.synthesis(load, parity, waves)
                 for total, (rows, depths), stop, set_amplitudes in zip(
                     parity_fields, indices, y_stops, amplitudes, strict=True
                 ):
@@ -155,12 +147,44 @@ def _sum_over_wavenumbers(
     return parity_fields
 
 
+class SolvedPanel(NamedTuple):
+    """Loads on the auxiliary bodies within one panel, which all points share."""
+
+    columns: LateralColumns
+    views: list[tuple[View, AuxiliaryLoads]]
+
+
+@cached("auxiliary loads")
+def _solve_panel(problem: EndProblem, panel: LateralPanel, shortest: float) -> SolvedPanel | None:
+    """Solve for the auxiliary loads of a problem within one panel; None if the panel needs no column."""
+    columns = lateral_columns(panel, problem.split_by_parity(problem.cell_loads), problem.grid)
+    return None if columns is None else _solve_columns(problem, columns, shortest)
+
+
+def _solve_columns(problem: EndProblem, columns: LateralColumns, shortest: float) -> SolvedPanel:
+    """Solve for the auxiliary loads of columns."""
+    poisson, settings = problem.poisson, problem.resolution
+    views = []
+    for view in make_views(problem, columns, shortest):
+        node_loads = [
+            EquationSet.build(view.modes, lateral, poisson, shortest, settings).auxiliary_loads(
+                view.spectra[:, min(node, view.spectra.shape[1] - 1)],
+                problem.loads,
+                shortest=shortest,
+                resolution=settings,
+            )
+            for node, lateral in enumerate(columns.nodes.tolist())
+        ]
+        views.append((view, AuxiliaryLoads.join(node_loads)))
+    return SolvedPanel(columns, views)
+
+
 def _panel_amplitudes(
     problem: EndProblem,
     harmonics: Harmonics,
     point_sets: list[_FoldedPositions],
     reference: float,
-    make_columns: Callable[[LateralPanel], LateralColumns | None],
+    solve: Callable[[EndProblem, LateralPanel, float], SolvedPanel | None],
 ) -> Iterator[tuple[LateralPanel, LateralColumns, list[tuple[IntArray, IntArray]], list[FloatArray]]]:
     """Yield panels, columns, indices of x and z within reach, and amplitudes as `_amplitudes`, per set of points."""
     distances = [points.distance for points in point_sets]
@@ -171,18 +195,13 @@ def _panel_amplitudes(
     for panel in problem.panels(y, shortest, reference if grows else None):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
-        columns = make_columns(panel)
-        if columns is None:
+        solved_panel = solve(problem, panel, shortest)
+        if solved_panel is None:
             continue
-        is_near = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
-        indices = [
-            (np.flatnonzero(is_near_set.any(axis=1)), np.flatnonzero(is_near_set.any(axis=0)))
-            for is_near_set in is_near
-        ]
-        if not any(rows.size for rows, _ in indices):
-            break
+        is_near = [panel.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
+        indices = [(np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))) for near in is_near]
         axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(point_sets, indices, strict=True)]
-        yield panel, columns, indices, _amplitudes(problem, harmonics, axes, columns, shortest)
+        yield panel, solved_panel.columns, indices, _amplitudes(solved_panel, harmonics, axes, len(problem.loads))
 
 
 class UnitFields(NamedTuple):
@@ -198,17 +217,15 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
     """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
     (load,) = problem.loads
     folded = _FoldedPositions(problem, points)
-    cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
-    parity_loads = {0: cells} if np.isinf(problem.length) else split_by_parity(cells, problem.sign_x)
+    parity_loads = problem.split_by_parity(np.eye(problem.grid.cells_x))
     parities = np.repeat(list(parity_loads), problem.grid.cells_x)
-    unit_loads = np.concatenate(list(parity_loads.values()), axis=1)
-    for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(
-        problem,
-        harmonics,
-        [folded],
-        reference,
-        lambda panel: LateralColumns(nodes=panel.nodes, along_x=unit_loads[:, None, :], parities=parities),
-    ):
+    unit_loads = np.concatenate(list(parity_loads.values()), axis=1)[:, None, :]
+
+    def solve(problem: EndProblem, panel: LateralPanel, shortest: float) -> SolvedPanel:
+        columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads, parities=parities)
+        return _solve_columns(problem, columns, shortest)
+
+    for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(problem, harmonics, [folded], reference, solve):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
         for parity in parity_loads:
@@ -226,127 +243,125 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
 
 
 def _amplitudes(
-    problem: EndProblem,
-    harmonics: Harmonics,
-    points: list[tuple[FloatArray, FloatArray]],
-    columns: LateralColumns,
-    shortest: float,
+    solved_panel: SolvedPanel, harmonics: Harmonics, points: list[tuple[FloatArray, FloatArray]], load_count: int
 ) -> list[FloatArray]:
     """Amplitudes of columns at the positions (x, z): arrays (load, component, x, z, wavenumber, column)."""
-    amplitudes = [
-        np.zeros((len(problem.loads), harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size))
-        for x, z in points
-    ]
+    columns, views = solved_panel
+    shape = (columns.nodes.size, columns.parities.size)
+    amplitudes = [np.zeros((load_count, harmonics.count, x.size, z.size, *shape)) for x, z in points]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
-    for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
-        view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        for node, lateral in enumerate(columns.nodes.tolist()):
-            spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
-            loads = _auxiliary_loads(view.modes, lateral, spectrum, problem, shortest)
-            for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):
-                if not indices.size:
-                    continue
-                cosine, sine = view.cosine[:, indices], view.sine[:, indices]
-                field = harmonics.of_equivalent_load(loads, cosine, sine, z)
-                field += harmonics.of_face_load(loads, view.x[indices], z)
-                rows, depths = (view.rows[indices] - start)[:, None, None], np.arange(z.size)[:, None]
-                amplitude[:, :, rows, depths, node, view.columns] = field
+    for view, loads in views:
+        rows, distance = view.positions(np.concatenate([x for x, _ in points]))
+        cosine, sine = view.modes.cosine(distance), view.modes.sine(distance)
+        for amplitude, (_, z), (start, stop) in zip(amplitudes, points, pairwise(starts), strict=True):
+            in_set = (rows >= start) & (rows < stop)
+            if not in_set.any():
+                continue
+            field = harmonics.of_equivalent_load(loads, cosine[:, in_set], sine[:, in_set], z)
+            field += harmonics.of_face_load(loads, distance[in_set], z)
+            set_rows, depths, nodes, indices = np.ix_(
+                rows[in_set] - start, np.arange(z.size), np.arange(columns.nodes.size), view.columns
+            )
+            amplitude[:, :, set_rows, depths, nodes, indices] = field
     return amplitudes
 
 
-def _auxiliary_loads(
-    modes: AxialModes, lateral: float, spectrum: ComplexArray, problem: EndProblem, shortest: float
-) -> AuxiliaryLoads:
-    """Solve for the auxiliary loads under a weighted spectrum, which all points share."""
-    arrays = ArrayKey(np.append(modes.wavenumbers, spectrum).view(np.float64))
-    settings = (problem.loads, problem.poisson, problem.resolution, shortest)
-    key = (type(modes), modes.length, modes.parity, arrays, lateral, *settings)
-    loads: AuxiliaryLoads | None = recall("auxiliary loads", key)
-    if loads is None:
-        system = EquationSet.build(modes, lateral, problem.poisson, shortest, problem.resolution)
-        loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
-        loads = retain("auxiliary loads", key, loads)
-    return loads
+Terms = Mapping[int, tuple[ComplexArray, ComplexArray]]  # by component: a constant and the factor of the depth
+
+
+def _field_of_equivalent_load(
+    loads: AuxiliaryLoads, z: FloatArray, k: ComplexArray, waves: Sequence[tuple[ComplexArray, Terms]]
+) -> FloatArray:
+    """Field (load, component, x, z, node, column) of H: sums of waves (mode, x) times ``exp(-k z)`` times terms."""
+    decay = np.exp(-k[:, None] * z[:, None])
+    z_times_decay = decay * z[:, None]
+    count = sum(len(terms) for _, terms in waves)
+    nodes, columns = loads.lateral.size, loads.equivalent[0].shape[2]
+    fields = np.empty((len(loads.equivalent), count, waves[0][0].shape[1], z.size, nodes, columns))
+    for wave, terms in waves:
+        along_z = np.stack([a[:, None] * decay + b[:, None] * z_times_decay for a, b in terms.values()], axis=1)
+        right_factor = along_z.reshape(nodes, -1, k.shape[1]).view(np.float64).swapaxes(1, 2)
+        for load_field, spectrum in zip(fields, loads.equivalent, strict=True):
+            along_x = np.multiply(spectrum.swapaxes(1, 2)[:, :, None], wave.T, order="C").conj()
+            # Real and imaginary parts alternate in memory: the product with the conjugate is the real part.
+            product = along_x.reshape(nodes, -1, k.shape[1]).view(np.float64) @ right_factor
+            load_field[list(terms)] = product.reshape(nodes, columns, -1, len(terms), z.size).transpose(3, 2, 4, 0, 1)
+    return fields
 
 
 def _stress_of_equivalent_load(
     loads: AuxiliaryLoads, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of H under the equivalent load, by the harmonics of a pressure: (load, 6, x, z, column)."""
-    nu, lateral, equivalent = loads.poisson, loads.lateral, loads.equivalent
-    axial = loads.modes.wavenumbers
+    """Stresses of H under the equivalent load, by the harmonics of a pressure: (load, 6, x, z, node, column)."""
+    nu, lateral, axial = loads.poisson, loads.lateral[:, None], loads.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
     c2, s2 = (axial / k) ** 2, (lateral / k) ** 2  # eq. (9)
-    decay = np.exp(-np.outer(k, z))
-    z_times_decay = decay * z
     zero = np.zeros_like(k)
     # eqs. (11), (12) and (13)
-    cosine_terms = [  # xx, yy, zz, yz, each as (constant, factor of z)
-        (-(c2 + 2 * nu * s2), c2 * k),
-        (-(s2 + 2 * nu * c2), s2 * k),
-        (zero - 1, -k),
-        (zero, zero + lateral),
+    cosine_terms = {
+        0: (-(c2 + 2 * nu * s2), c2 * k),
+        1: (-(s2 + 2 * nu * c2), s2 * k),
+        2: (zero - 1, -k),
+        5: (zero, zero + lateral),
+    }
+    sine_terms = {3: (-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), 4: (zero, zero - axial)}
+    return _field_of_equivalent_load(loads, z, k, [(cosine, cosine_terms), (sine, sine_terms)])
+
+
+def _field_of_face_load(loads: AuxiliaryLoads, along_x: ComplexArray, along_z: ComplexArray) -> FloatArray:
+    """Field (load, component, x, z, node, column) of V from waves (component, x, depth) and (depth, z)."""
+    sections = [slice(stop - count, stop) for stop, count in zip(np.cumsum(loads.counts), loads.counts, strict=True)]
+    fields = [
+        [real_product(along_x[..., part], along_z[part, :, None] * columns[part, None]) for part in sections]
+        for columns in loads.face_load
     ]
-    sine_terms = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
-    stresses = np.empty((len(equivalent), 6, cosine.shape[1], z.size, equivalent[0].shape[1]))
-    for waves, terms, components in ((cosine, cosine_terms, [0, 1, 2, 5]), (sine, sine_terms, [3, 4])):
-        along_z = np.stack([a[:, None] * decay + b[:, None] * z_times_decay for a, b in terms], axis=1)
-        for load_stresses, spectrum in zip(stresses, equivalent, strict=True):
-            along_x = spectrum.T[:, None, :] * waves.T
-            load_stresses[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
-    return stresses
+    return np.stack([np.stack(node_fields, axis=-2) for node_fields in fields])
 
 
 def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
-    """Stresses of V under the face loads on its two ends: (load, 6, x, z, column)."""
+    """Stresses of V under the face loads on its two ends: (load, 6, x, z, node, column)."""
     # The slab's harmonics are two half-space harmonics that start from either end; with ``X = kappa`` times the
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
-    nu, lateral, modes = loads.poisson, loads.lateral, loads.modes
-    depth, face_load = loads.depth, loads.face_load
-    kappa, tau, along_z = _face_waves(loads, z)
-    # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
-    decay, x_times_decay = _decay_from_end(x, kappa, tau)
-    even_growth = odd_growth = x_times_decay
-    if modes.parity:
-        far_decay, x_times_decay = _decay_from_end(modes.length - x, kappa, tau)
-        decay += modes.parity * far_decay
-        even_growth = even_growth + modes.parity * x_times_decay
-        odd_growth = odd_growth - modes.parity * x_times_decay
+    nu, modes, depth = loads.poisson, loads.modes, loads.depth
+    lateral, kappa, tau, along_z = _face_waves(loads, z)
+    (decay, even_growth), (_, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
     potential = (1 - 2 * nu) * decay - even_growth
     lateral_part = 2 * nu * decay
-    # eqs. (11) and (12) with the waves of eq. (25)
-    cosine_z: ComplexArray = np.empty((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
-    sine_z: ComplexArray = np.empty((2, x.size, depth.size), np.complex128)  # yz, xz
-    np.add(decay, even_growth, out=cosine_z[0])
-    np.add((lateral / kappa) ** 2 * potential, lateral_part, out=cosine_z[1])
-    np.add((depth / kappa) ** 2 * potential, lateral_part, out=cosine_z[2])
-    np.multiply(-lateral / kappa, odd_growth, out=cosine_z[3])
-    np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
-    np.multiply(depth / kappa, odd_growth, out=sine_z[1])
-    sine_z *= -1j
-    stresses = np.empty((len(face_load), 6, x.size, z.size, face_load[0].shape[1]))
-    for load_stresses, columns in zip(stresses, face_load, strict=True):
-        face_waves = along_z[..., None] * columns[:, None, :]
-        load_stresses[[0, 1, 2, 3]] = real_product(cosine_z, face_waves)
-        load_stresses[[5, 4]] = real_product(sine_z, face_waves)
-    return stresses
+    # eqs. (11) and (12) with the waves of eq. (25): xx, yy, zz, xy from cosines along z, xz and yz from sines
+    along_x: ComplexArray = np.empty((6, x.size, depth.size), np.complex128)
+    np.add(decay, even_growth, out=along_x[0])
+    np.add((lateral / kappa) ** 2 * potential, lateral_part, out=along_x[1])
+    np.add((depth / kappa) ** 2 * potential, lateral_part, out=along_x[2])
+    np.multiply(-lateral / kappa, odd_growth, out=along_x[3])
+    np.multiply(-1j * depth / kappa, odd_growth, out=along_x[4])
+    np.multiply(-1j * lateral * depth / kappa**2, potential, out=along_x[5])
+    return _field_of_face_load(loads, along_x, along_z)
 
 
-def _face_waves(loads: AuxiliaryLoads, z: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z) of V from either face per unit load."""
-    kappa = np.sqrt(loads.depth**2 + loads.lateral**2)
+def _face_waves(loads: AuxiliaryLoads, z: FloatArray) -> tuple[FloatArray, ComplexArray, ComplexArray, ComplexArray]:
+    """``k_y``, ``kappa``, ``tau`` of depth wavenumbers, and waves (depth, z) of V from either face per unit load."""
+    lateral = np.repeat(loads.lateral, loads.counts)
+    kappa = np.sqrt(loads.depth**2 + lateral**2)
     amplitude, tau = loads.modes.face_amplitude(kappa)
-    return kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
+    return lateral, kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
 
 
-def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
-    scaled_distance = np.outer(distance, kappa)
-    decay = np.exp(-scaled_distance)
-    scaled_distance += tau
-    scaled_distance *= decay
-    return decay, scaled_distance
+def _sums_over_ends(
+    modes: AxialModes, x: FloatArray, kappa: ComplexArray, tau: ComplexArray
+) -> list[tuple[ComplexArray, ComplexArray]]:
+    """Sum ``exp(-X)`` and ``(tau + X) exp(-X)`` (x, depth) over the ends, for even and for odd components."""
+    waves = []
+    for distance in (x, modes.length - x) if modes.parity else (x,):
+        scaled_distance = np.outer(distance, kappa)
+        decay = np.exp(-scaled_distance)
+        scaled_distance += tau
+        scaled_distance *= decay
+        waves.append((decay, scaled_distance))
+    if not modes.parity:
+        return 2 * waves
+    (decay, growth), (far_decay, far_growth) = waves
+    return [(decay + sign * far_decay, growth + sign * far_growth) for sign in (modes.parity, -modes.parity)]
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
@@ -362,44 +377,28 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
 def _displacement_of_equivalent_load(
     loads: AuxiliaryLoads, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: (load, 3, x, z, column)."""
-    nu, lateral, equivalent = loads.poisson, loads.lateral, loads.equivalent
-    axial = loads.modes.wavenumbers
+    """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: (load, 3, x, z, node, column)."""
+    nu, lateral, axial = loads.poisson, loads.lateral[:, None], loads.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
-    decay = np.exp(-np.outer(k, z))
     compressibility = 1 - 2 * nu
-    displacements = np.empty((len(equivalent), 3, cosine.shape[1], z.size, equivalent[0].shape[1]))
     # eqs. (10) and (13)
-    terms = (  # component, function of x, constant, factor of k z
-        (0, sine, -compressibility * axial / k**2, axial / k**2),
-        (1, cosine, compressibility * lateral / k**2, -lateral / k**2),
-        (2, cosine, 2 * (1 - nu) / k, 1 / k),
-    )
-    for component, function, constant, slope in terms:
-        along_z = decay * (constant[:, None] + slope[:, None] * np.outer(k, z))
-        for load_displacements, spectrum in zip(displacements, equivalent, strict=True):
-            load_displacements[component] = real_product(function.T, along_z[..., None] * spectrum[:, None, :])
-    return displacements
+    sine_terms = {0: (-compressibility * axial / k**2, axial / k)}
+    cosine_terms = {1: (compressibility * lateral / k**2, -lateral / k), 2: (2 * (1 - nu) / k, np.ones_like(k))}
+    return _field_of_equivalent_load(loads, z, k, [(cosine, cosine_terms), (sine, sine_terms)])
 
 
 def _displacement_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
-    """``2 G u`` of V under the face loads on its two ends: (load, 3, x, z, column)."""
+    """``2 G u`` of V under the face loads on its two ends: (load, 3, x, z, node, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
-    nu, lateral, modes, depth = loads.poisson, loads.lateral, loads.modes, loads.depth
-    kappa, tau, along_z = _face_waves(loads, z)
-    along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
-    ends = [(x, 1, 1)]
-    if modes.parity:
-        ends.append((modes.length - x, modes.parity, -modes.parity))
-    for distance, even_sign, odd_sign in ends:
-        scaled_distance = np.outer(distance, kappa)
-        decay = np.exp(-scaled_distance)
-        potential = (1 - 2 * nu - tau - scaled_distance) * decay  # eq. (10)
-        along_x[0] -= odd_sign * (tau + scaled_distance + 2 * (1 - nu)) * decay / kappa
-        along_x[1] -= even_sign * lateral / kappa**2 * potential
-        along_x[2] += even_sign * depth / kappa**2 * potential
-    along_x[2] *= -1j
-    return np.stack([real_product(along_x, along_z[..., None] * columns[:, None, :]) for columns in loads.face_load])
+    nu, modes, depth = loads.poisson, loads.modes, loads.depth
+    lateral, kappa, tau, along_z = _face_waves(loads, z)
+    (decay, growth), (odd_decay, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
+    potential = (1 - 2 * nu) * decay - growth  # eq. (10)
+    along_x = np.empty((3, x.size, depth.size), np.complex128)
+    np.divide(odd_growth + 2 * (1 - nu) * odd_decay, -kappa, out=along_x[0])
+    np.multiply(-lateral / kappa**2, potential, out=along_x[1])
+    np.multiply(-1j * depth / kappa**2, potential, out=along_x[2])
+    return _field_of_face_load(loads, along_x, along_z)
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``

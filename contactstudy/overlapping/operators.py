@@ -31,7 +31,7 @@ class Band:
     """One equation set."""
 
     system: EquationSet  # equation set at the node
-    view: View  # unit loads on the cells along x, and the positions, in the axial modes
+    view: View  # unit loads on the cells along x in the axial modes
     filters: dict[int, FloatArray]  # (cell_y, y): from loads even (1) or odd (-1) along y to the part of the node at y
 
 
@@ -153,7 +153,7 @@ class OverlappingOperators:
             for panel in problem.panels(y, shortest, reference):
                 columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads[:, None, :], parities=parities)
                 even_filters, odd_filters = panel.filters(problem.grid, y)
-                for view in make_views(problem, columns, x, shortest):
+                for view in make_views(problem, columns, shortest):
                     for node, lateral in enumerate(panel.nodes.tolist()):
                         system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
                         bands.append(Band(system, view, {1: even_filters[node], -1: odd_filters[node]}))
@@ -201,7 +201,8 @@ class OverlappingOperators:
 
         def matrix(band: Band) -> FloatArray:
             values = np.zeros((self.positions.x.size, band.system.depth.size))
-            values[band.view.rows] = np.real(band.view.cosine.T @ band.system.top) * band.system.scale
+            rows, distance = band.view.positions(self.positions.x)
+            values[rows] = np.real(band.view.modes.cosine(distance).T @ band.system.top) * band.system.scale
             return values
 
         return SumOperator([matrix(band) for band in self.bands], self.positions.y.size)
@@ -219,7 +220,7 @@ class OverlappingOperators:
         waves = np.exp(1j * np.outer(self.positions.z, depth))  # eq. (8)
         waves = waves * weights * modes.load_on_face(np.sqrt(depth**2 + system.lateral**2))
         # The second end's load follows from the first's by parity; separate ends have a view each.
-        sign = modes.parity**end if modes.parity else int(band.view.flipped == bool(end))
+        sign = modes.parity**end if modes.parity else int(bool(band.view.end) == bool(end))
         return -sign * real_part_matrix(waves @ mode_matrix + np.conj(waves @ conjugate_matrix))
 
     def equivalent(self, load: Load) -> EquivalentOperators:

@@ -9,7 +9,7 @@ the window and the positions: fields of loads add up.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -18,6 +18,7 @@ import numpy as np
 
 from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
 from contactstudy.arrays.peaks import lagrange_weights
+from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
@@ -95,21 +96,20 @@ class LateralColumns:
     nodes: FloatArray  # wavenumbers along y, 1/m
     along_x: FloatArray  # (cell, node or 1, column): the functions of x
     parities: IntArray  # (column): 1 or -1 for an even or odd part of the load, 0 for an unsplit load
-    even_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
-    """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
-    even in y; empty for operators that filter along y themselves."""
-    odd_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
+    along_y: Mapping[int, FloatArray] = field(default_factory=dict)
+    """Per parity, from the amplitudes to the quadrature nodes of the parts of the load even and odd along y: arrays (2,
+    node column, fine); empty for operators that filter along y themselves."""
 
-    def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
-        """`even_filters` and `odd_filters` of one parity for a load in one direction: arrays (node column, y)."""
-        # Kernels of a load that a reflection along y reverses carry a factor i, which turns a cosine into a sine.
-        is_parity = self.parities == parity
-        even_filters, odd_filters = (
-            waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even_filters, self.odd_filters)
-        )
+    def synthesis(self, load: Load, parity: int, waves: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Matrices (node column, y) from amplitudes of one parity to their sum at the positions of the `waves`."""
+        # They serve components even and odd under a load even in y. Kernels of a load that a reflection along y
+        # reverses carry a factor i, which turns a cosine into a sine.
+        (even_part, odd_part), (cosine, sine) = self.along_y[parity], waves
+        even_filters, odd_filters = even_part @ cosine + odd_part @ sine, odd_part @ cosine - even_part @ sine
         return (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
 
 
+@cached("lateral panels")
 def lateral_panels(
     first: float,
     max_distance: float,
@@ -151,63 +151,36 @@ def lateral_panels(
     return panels
 
 
-def lateral_columns(
-    panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid, y: FloatArray
-) -> LateralColumns | None:
+def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid) -> LateralColumns | None:
     """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if the panel needs no column."""
-    waves = panel.load_waves(grid)
-    cosine, sine = panel.waves(y)
-    along_x, parities, even_waves, odd_waves = [], [], [], []
+    # With an interpolation the load is represented by few functions of x at few nodes.
+    waves, fine = panel.load_waves(grid), panel.fine_nodes.size
     spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
     min_amplitude = NEGLIGIBLE_LOAD * max(
         (np.abs(amplitude).max() for amplitudes in spectra_of.values() for amplitude in amplitudes), default=0.0
     )
+    along_x, along_y, parities = [], {}, []
     for parity, spectra in spectra_of.items():
-        for spectrum, even_wave, odd_wave in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
-            if np.abs(spectrum).max() > min_amplitude:
-                along_x.append(spectrum)
-                parities.append(parity)
-                even_waves.append(even_wave)
-                odd_waves.append(odd_wave)
+        parts = [part for part, spectrum in enumerate(spectra) if np.abs(spectrum).max() > min_amplitude]
+        if not parts:
+            continue
+        functions = np.stack([spectra[part] for part in parts], axis=-1)  # (cell, fine, part)
+        if panel.interpolation is None:
+            along_nodes = np.eye(fine)[None, :, None, :] * np.eye(len(parts))[:, None, :, None]
+        else:
+            along_cells, singular, right = np.linalg.svd(functions.reshape(functions.shape[0], -1), full_matrices=False)
+            rank = int((singular > NEGLIGIBLE_LOAD * singular[0]).sum())
+            functions = along_cells[:, None, :rank]
+            factors = (singular[:rank, None] * right[:rank]).reshape(rank, fine, -1)
+            along_nodes = panel.interpolation.T[None, :, None, :] * factors.transpose(2, 0, 1)[:, None]
+        along_x.append(functions)
+        parities.append(np.full(functions.shape[2], parity))
+        along_y[parity] = np.zeros((2, along_nodes[0, ..., 0].size, fine))
+        along_y[parity][parts] = along_nodes.reshape(len(parts), -1, fine)
     if not along_x:
         return None
-    columns = LateralColumns(
-        nodes=panel.fine_nodes,
-        along_x=np.stack(along_x, axis=-1),
-        parities=np.array(parities),
-        even_filters=np.stack(even_waves, axis=1),
-        odd_filters=np.stack(odd_waves, axis=1),
-    )
-    if panel.interpolation is not None:
-        columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
-    return columns
-
-
-def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
-    """Represent the load by few functions of x at few nodes."""
-    cells, fine, _ = columns.along_x.shape
-    along_x, parities, factors = [], [], []
-    for parity in np.unique(columns.parities):
-        is_parity = columns.parities == parity
-        along_cells, singular, right = np.linalg.svd(
-            columns.along_x[..., is_parity].reshape(cells, -1), full_matrices=False
-        )
-        rank = int((singular > NEGLIGIBLE_LOAD * singular[0]).sum())
-        along_nodes = (singular[:rank, None] * right[:rank]).reshape(rank, fine, -1)
-        along_x.append(along_cells[:, :rank])
-        parities.append(np.full(rank, parity))
-        factors.append((is_parity, interpolation.T[:, None, :, None] * along_nodes))
-    column_parities = np.concatenate(parities)
-    even_filters, odd_filters = (
-        np.concatenate([np.tensordot(factor, waves[:, is_parity], axes=2) for is_parity, factor in factors], axis=1)
-        for waves in (columns.even_filters, columns.odd_filters)
-    )
     return LateralColumns(
-        nodes=nodes,
-        along_x=np.concatenate(along_x, axis=1)[:, None, :],
-        parities=column_parities,
-        even_filters=even_filters,
-        odd_filters=odd_filters,
+        nodes=panel.nodes, along_x=np.concatenate(along_x, axis=2), parities=np.concatenate(parities), along_y=along_y
     )
 
 
@@ -315,12 +288,16 @@ class EndProblem:
         """1 if a mirror image keeps the loads, -1 if it reverses them."""
         return self.loads[0].sign_x
 
-    def split_by_mirror_sign(self) -> Iterator[EndProblem]:
-        """Yield the problem of loads that images keep, and the problem of loads that images reverse."""
-        for sign in (1, -1):
-            loads = tuple(load for load in self.loads if load.sign_x == sign)
-            if loads:
-                yield replace(self, loads=loads, resolution=self.resolution.for_loads(loads))
+    @cached_property
+    def by_mirror_sign(self) -> list[EndProblem]:
+        """Problem of the loads that images keep, and problem of the loads that images reverse."""
+        groups = (tuple(load for load in self.loads if load.sign_x == sign) for sign in (1, -1))
+        return [replace(self, loads=loads, resolution=self.resolution.for_loads(loads)) for loads in groups if loads]
+
+    def split_by_parity(self, cell_loads: FloatArray) -> dict[int, FloatArray]:
+        """Return a load on the columns (column, y), between two ends its even (1) and odd (-1) parts."""
+        column_loads = cell_loads[self.cell_of_column]
+        return {0: column_loads} if np.isinf(self.length) else split_by_parity(column_loads, self.sign_x)
 
     @property
     def corner_offset(self) -> float:
@@ -373,23 +350,22 @@ def split_by_parity(cell_loads: FloatArray, sign_x: int) -> dict[int, FloatArray
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class View:
-    """A load and positions in one set of axial modes; from end II when `flipped`."""
-
-    # `spectra`: (axial wavenumber, node or 1, column); `columns`: their indices; `rows`, `x`: positions within reach,
-    # and their distances from the end.
+    """A load in one set of axial modes."""
 
     modes: AxialModes
-    spectra: ComplexArray
-    columns: IntArray
-    rows: IntArray
-    x: FloatArray
-    cosine: ComplexArray
-    sine: ComplexArray
-    flipped: bool
+    spectra: ComplexArray  # (axial wavenumber, node or 1, column)
+    columns: IntArray  # indices of the columns
+    end: float  # position of the end from which distances are counted, metres
+
+    def positions(self, x: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return indices of the positions within reach among `x`, and their distances from the end."""
+        distance = np.abs(x - self.end)
+        rows = np.flatnonzero(distance <= self.modes.reach)
+        return rows, distance[rows]
 
 
-def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortest: float) -> list[View]:
-    """Return views of a load and of positions `x`, one per set of axial modes."""
+def make_views(problem: EndProblem, load: LateralColumns, shortest: float) -> list[View]:
+    """Return views of a load, one per set of axial modes."""
     # Ends too far apart to interact are two quarter spaces; a load split by parity has positions in the first half.
     length, edges = problem.length, problem.column_edges
     is_split = bool(load.parities.all())
@@ -401,21 +377,8 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
         if not columns.size:
             continue
         integrals = modes.load_weights[:, None] * modes.cell_integrals(problem.loads[0], edges)
-        for flipped in (False, True) if np.isfinite(length) and not modes.parity and not is_split else (False,):
-            end_integrals = problem.sign_x * integrals[:, ::-1] if flipped else integrals
-            distance = length - x if flipped else x
-            rows = np.flatnonzero(distance <= modes.reach)
-            distance = distance[rows]
-            views.append(
-                View(
-                    modes=modes,
-                    spectra=np.tensordot(end_integrals, load.along_x[..., columns], axes=1),
-                    columns=columns,
-                    rows=rows,
-                    x=distance,
-                    cosine=modes.cosine(distance),
-                    sine=modes.sine(distance),
-                    flipped=flipped,
-                )
-            )
+        for end in (0.0, length) if np.isfinite(length) and not modes.parity and not is_split else (0.0,):
+            end_integrals = problem.sign_x * integrals[:, ::-1] if end else integrals
+            spectra = np.tensordot(end_integrals, load.along_x[..., columns], axes=1)
+            views.append(View(modes=modes, spectra=spectra, columns=columns, end=end))
     return views

@@ -46,14 +46,20 @@ Field = Callable[[FloatArray, FloatArray], FloatArray]
 def loads_of(modes: AxialModes, *, equivalent: ComplexArray, depth: ComplexArray, face: ComplexArray) -> AuxiliaryLoads:
     """Loads of one direction on the auxiliary bodies."""
     return AuxiliaryLoads(
-        modes=modes, lateral=LATERAL, poisson=POISSON, equivalent=[equivalent], depth=depth, face_load=[face]
+        modes=modes,
+        lateral=np.array([LATERAL]),
+        poisson=POISSON,
+        equivalent=[equivalent[None]],
+        depth=depth,
+        counts=[depth.size],
+        face_load=[face],
     )
 
 
 def field_of_h(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
     """Field of H under an equivalent load of two columns."""
     loads = loads_of(modes, equivalent=WEIGHTS[: modes.wavenumbers.size], depth=RAY[:2], face=WEIGHTS[:2])
-    return lambda x, z: field(loads, modes.cosine(x), modes.sine(x), z)[0]
+    return lambda x, z: field(loads, modes.cosine(x), modes.sine(x), z)[0, ..., 0, :]
 
 
 def evaluate_beside_end(
@@ -61,7 +67,7 @@ def evaluate_beside_end(
 ) -> Field:
     """Field of V under face loads of two columns."""
     loads = loads_of(modes, equivalent=WEIGHTS[: modes.wavenumbers.size], depth=depth, face=load)
-    return lambda x, z: field(loads, x, z)[0]
+    return lambda x, z: field(loads, x, z)[0, ..., 0, :]
 
 
 def along(field: Field, axis: int) -> FloatArray:

@@ -32,13 +32,13 @@ Y = np.array([-1.5, -0.2, 0.0, 0.7])
 def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
     total = np.zeros((2, 2, len(parity_loads), GRID.cells_x, y.size))
-    columns = lateral_columns(panel, parity_loads, GRID, y)
+    columns = lateral_columns(panel, parity_loads, GRID)
     assert columns is not None
     for index, parity in enumerate(parity_loads):
         amplitudes = columns.along_x[..., columns.parities == parity] * np.exp(-0.3 * columns.nodes)[:, None]
         amplitude_columns = amplitudes.reshape(GRID.cells_x, -1)
         for load_index, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
-            for symmetry_index, synthesis in enumerate(columns.synthesis(load, parity)):
+            for symmetry_index, synthesis in enumerate(columns.synthesis(load, parity, panel.waves(y))):
                 total[load_index, symmetry_index, index] += amplitude_columns @ synthesis
     return total
 
@@ -60,7 +60,7 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
 def test_product_of_x_and_y_has_one_column_per_node():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
-    loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]
+    loads = [lateral_columns(panel, {0: pressure}, GRID) for panel in panels]
     columns = [load.nodes.size * load.parities.size for load in loads if load is not None]
     assert sum(columns) < 0.4 * sum(2 * panel.fine_nodes.size for panel in panels)
     assert columns[-1] == Resolution().lateral_nodes
@@ -68,14 +68,14 @@ def test_product_of_x_and_y_has_one_column_per_node():
 
 def test_even_load_has_no_odd_columns():
     pressure = np.ones(GRID.shape)
-    loads = lateral_columns(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID, Y)
+    loads = lateral_columns(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID)
     assert loads is not None
     assert loads.parities.size == 1
 
 
 def test_no_load_has_no_columns():
     panel = lateral_panels(0.05, 2.5, 60.0, Resolution())[1]
-    assert lateral_columns(panel, {}, GRID, Y) is None
+    assert lateral_columns(panel, {}, GRID) is None
 
 
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])
