@@ -25,7 +25,15 @@ from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, initial_state, solve_newton
+from contactstudy.film.newton import (
+    FilmProblem,
+    FilmSettings,
+    FilmSolution,
+    FilmState,
+    StepFailedError,
+    initial_state,
+    solve_newton,
+)
 from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 from contactstudy.kernels.load import Load
 
@@ -93,6 +101,10 @@ class FilmResolution:
             if not shortest <= checks.positive(name, length := getattr(self, name)) <= longest:
                 hint = "`inlet` of solve_film is the position of a meniscus" if name == "inlet" else ""
                 raise InvalidInputError(name, length, f"from {shortest:g} to {longest:g} inlet lengths", hint)
+
+    def round_length(self, length: float) -> float:
+        """Nearest power of the ratio."""
+        return float(self.ratio ** np.round(np.log(length) / np.log(self.ratio)))
 
 
 RESOLUTION = FilmResolution()  # Default cells
@@ -225,13 +237,13 @@ class FilmCase:
         max_pressure = hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus)
         width = max_pressure / self.pressure_scale  # half-width of the line contact over the half-width
         inlet_length = width * (self.central_film / self.height_scale / width**2) ** (2 / 3)  # eq. (403)
-        ratio = self.resolution.ratio
-        return float(ratio ** np.round(np.log(inlet_length) / np.log(ratio)))
+        return self.resolution.round_length(inlet_length)
 
     @property
     def coarsest_level(self) -> Level:
         """Cells without refinement."""
-        return Level(cells=0, columns=0, closures=[*self.contact_ends], inlet_length=self.inlet_length)
+        closures = [(end, 0.0) for end in self.contact_ends]
+        return Level(cells=0, columns=0, closures=closures, inlet_length=self.inlet_length)
 
     def film_ratio(self, result: xr.Dataset) -> float:
         """Central film by Moes' formula over that of a film at another speed or with another lubricant."""
@@ -306,20 +318,35 @@ class MergedCells:
         return stiffness
 
 
+class Minimum(NamedTuple):
+    """Minimum of a film along one axis."""
+
+    film: float
+    position: float
+    length: float  # distance from the minimum at which the logarithm of the film is greater by a half
+
+
 class Level(NamedTuple):
     """Cells of a film: numbers of refinements along y and of the columns, in the geometry of a case."""
 
     cells: int
     columns: int
-    closures: list[float]  # positions x of the narrowest columns over the half-width
+    closures: list[tuple[float, float]]  # positions x of narrow columns and widths, if wider than the narrowest, over a
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
-    def refined(self, direction: str, film: FilmCase, x: FloatArray, minima: Iterable[float]) -> Level:
+    def refined(self, direction: str, film: FilmCase, x: FloatArray, minima: Iterable[Minimum]) -> Level:
         """Next level in a direction, of a film with columns at `x` and least films of both sides at `minima`."""
+        if direction == "cells":
+            return self._replace(cells=self.cells + 1)
         # The centres of the columns with the least films are equal for similar speeds.
-        nearest = (float(x[np.abs(x - position).argmin()]) for position in minima)
-        closures = self.closures if direction == "cells" else [*film.contact_ends, *nearest]
-        return self._replace(closures=closures, **{direction: getattr(self, direction) + 1})
+        closures = [
+            (
+                float(x[np.abs(x - minimum.position).argmin()]),
+                film.resolution.columns_inlet * film.resolution.round_length(minimum.length),
+            )
+            for minimum in minima
+        ]
+        return self._replace(columns=self.columns + 1, closures=[*film.coarsest_level.closures, *closures])
 
 
 class FilmOnCells(NamedTuple):
@@ -348,9 +375,9 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     growth = resolution.columns_growth * column_scale**0.35
 
     def column_width(x: float) -> float:
-        nearest = min(abs(x - closure) for closure in level.closures)
+        widths = ((abs(x - closure), max(min_dx, column_scale * width)) for closure, width in level.closures)
         max_width = min(resolution.widest_column, 0.2 * (stop - start))
-        return float(min(min_dx + growth * max(nearest - 2 * min_dx, 0.0), max_width))
+        return float(min(max_width, *(width + growth * max(distance - 2 * width, 0.0) for distance, width in widths)))
 
     x_edges = graded_edges(start, stop, column_width)
     delta, half_width = level.inlet_length, film.contact_half_width
@@ -378,7 +405,7 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
 def film_on_level(
     film: FilmCase, level: Level, settings: FilmSettings, start: FilmOnCells | xr.Dataset | None = None
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, to its tolerance, from the dry contact or from another film."""
+    """Solve for the film on the cells of a level, to its tolerance, from another film or else from the dry contact."""
     cells, merged = create_cells(film, level)
     a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
     window = a * float(cells.y_edges[0]), a * float(cells.y_edges[-1])
@@ -411,7 +438,8 @@ def film_on_level(
         asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
         mean_height=None if rough is None else rough.mean_height(height_scale),
     )
-    if start is None:
+
+    def start_from_dry_contact() -> FilmState:
         contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
         # Cells enter the contact together but leave it one by one: interpolation would load cells outside.
         refined = film.dry_contact
@@ -420,18 +448,22 @@ def film_on_level(
             for positions, centres in ((grid.x, refined.shape.grid.x), (grid.y, refined.shape.grid.y))
         )
         dry = solve_normal(operator, contact, refined.pressure[np.ix_(*nearest)])
+        if not dry.converged:
+            raise StepFailedError(f"the dry contact on its cells has not converged in {dry.applications} iterations")
         opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
         # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
         separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
         distance = merged.to_centres(opening[columns]) / height_scale + separation
         motion = np.append(separation, np.zeros(len(dry.motion) - 1)) - np.array(dry.motion) / height_scale
-        state = initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
-    elif isinstance(start, xr.Dataset):
-        state = _convert_result(film, start, problem)
-    else:
-        state = _transfer_state(start, problem)
+        return initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
+
+    guess = None
+    if isinstance(start, xr.Dataset):
+        guess = _convert_result(film, start, problem)
+    elif start is not None:
+        guess = _transfer_state(start, problem)
     settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
-    solution = solve_newton(problem, state, settings, steady=start is not None)
+    solution = solve_newton(problem, guess, settings, start_from_dry_contact)
     return FilmOnCells(level=level, problem=problem, solution=solution, shape=shape, columns=columns, merged=merged)
 
 
@@ -450,7 +482,7 @@ def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSet
         ),
     )
     state = initial_state(problem, state.pressure, state.motion, state.distance)
-    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, steady=True))
+    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, lambda: state))
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:

@@ -161,15 +161,17 @@ class _LinearisedEquations(NamedTuple):
     film: FloatArray
 
 
-def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings, *, steady: bool) -> FilmSolution:
-    """Solve for the film from a start; if `steady`, by pseudo-time steps only if the steady iteration fails."""
+def solve_newton(
+    problem: FilmProblem, guess: FilmState | None, settings: FilmSettings, make_start: Callable[[], FilmState]
+) -> FilmSolution:
+    """Solve for the film from a guess; without one, or if its iteration fails, by pseudo-time steps from a start."""
     iteration = _Iteration(problem, settings)
-    if steady:
+    if guess is not None:
         try:
-            return iteration.converge(start, np.inf, None)
+            return iteration.converge(guess, np.inf, None)
         except StepFailedError:
-            LOGGER.info("the start is too far: pseudo-time steps")
-    state = start
+            LOGGER.info("the guess is too far: pseudo-time steps")
+    state = make_start()
     pending_steps = list(settings.steps)
     while pending_steps:
         step = pending_steps[0]

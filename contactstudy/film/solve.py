@@ -27,6 +27,7 @@ from contactstudy.film.levels import (
     FilmOnCells,
     FilmResolution,
     Level,
+    Minimum,
     continue_solution,
     film_on_level,
 )
@@ -187,9 +188,9 @@ class Films(NamedTuple):
     least_film_first: float
     least_film_last: float
     least_film: float
-    first_x: float
-    last_x: float
-    least_x: float
+    first: Minimum
+    last: Minimum
+    least: Minimum
     least_y: float
 
     @property
@@ -234,9 +235,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
         try:
             level_film = film_on_level(film, level, settings, level_film or start)
         except StepFailedError:
-            if level_film is None and start is not None:
-                return _refine(film, accuracy, settings)
-            if level_film is None or np.isinf([*direction_errors.values()]).any():
+            if np.isinf([*direction_errors.values()]).any():
                 raise
             break
         solutions.append(level_film.solution)
@@ -253,7 +252,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
         if error <= accuracy or not directions:
             break
         direction = max(directions, key=lambda name: float((direction_errors[name] * films[-1].thicknesses).max()))
-        level = level.refined(direction, film, level_film.problem.cells.x, (films[-1].first_x, films[-1].last_x))
+        level = level.refined(direction, film, level_film.problem.cells.x, (films[-1].first, films[-1].last))
     return level_film, direction_errors, solutions
 
 
@@ -275,14 +274,12 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
         return None
     is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
     ratios = np.array([float(start[name] / start["central_film"]) for name in FILM_NAMES])
-    x = start["x"].values / film.half_width
-    minima = [float(start[f"least_film_{side}_x"]) / film.half_width for side in ("first", "last")]
     for name in sorted(ERROR_FACTORS, key=lambda name: -float((direction_errors[name] * ratios).max())):
         if (
             _combine_errors(direction_errors, ratios).max() > accuracy
             and getattr(level, name) < film.resolution.levels - 1
         ):
-            level = level.refined(name, film, x, minima)
+            level = level._replace(**{name: getattr(level, name) + 1})
             direction_errors[name] *= CHANGE_RATIOS[name]
     if any(recorded.get(name) != value for name, value in film.settings.items()) or not is_near:
         return None
@@ -313,22 +310,21 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     mid_length = 0.5 * (low + high)
     within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
     column_minima = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
-    least_films, positions = np.transpose(column_minima)
+    least_films, positions, _ = np.transpose(column_minima)
     centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
-    side_minima = [_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side)]
-    (first, first_x), (last, last_x) = side_minima
-    least, least_x = min(side_minima)
+    first, last = (_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side))
+    least = min(first, last)
     return Films(
         central_film=_interpolate(cells.x, centre_films, mid_length),
         least_film_middle=_interpolate(cells.x, least_films, mid_length),
-        least_film_first=first,
-        least_film_last=last,
-        least_film=least,
-        first_x=first_x,
-        last_x=last_x,
-        least_x=least_x,
-        least_y=float(np.interp(least_x, cells.x, positions)),
+        least_film_first=first.film,
+        least_film_last=last.film,
+        least_film=least.film,
+        first=first,
+        last=last,
+        least=least,
+        least_y=float(np.interp(least.position, cells.x, positions)),
     )
 
 
@@ -339,8 +335,8 @@ def _interpolate(x: FloatArray, films: FloatArray, position: float) -> float:
     return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ films[neighbours])
 
 
-def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> tuple[float, float]:
-    """Minimum and position in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
+def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> Minimum:
+    """Minimum in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
     cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
     spline = scipy.interpolate.CubicSpline(centres[neighbours], np.log(films[neighbours]))
@@ -348,7 +344,9 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
     positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
     minimum = int(logarithms.argmin())
-    return float(np.exp(logarithms[minimum])), float(positions[minimum])
+    curvature = float(spline(positions[minimum], 2))
+    length = curvature**-0.5 if curvature > 0 else float(edges[cell + 1] - edges[cell])
+    return Minimum(float(np.exp(logarithms[minimum])), float(positions[minimum]), length)
 
 
 def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
@@ -391,10 +389,10 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     scalars |= {
         "end_film_ratio": films.least_film / films.least_film_middle,
         "end_film_ratio_error": (errors["least_film"] + errors["least_film_middle"]) / films.least_film_middle,
-        "least_film_x": film.half_width * films.least_x,
+        "least_film_x": film.half_width * films.least.position,
         "least_film_y": sign * film.half_width * films.least_y,
-        "least_film_first_x": film.half_width * films.first_x,
-        "least_film_last_x": film.half_width * films.last_x,
+        "least_film_first_x": film.half_width * films.first.position,
+        "least_film_last_x": film.half_width * films.last.position,
         "entrainment_speed": film.speeds.entrainment,
         "slide_roll_ratio": film.speeds.slide_roll_ratio,
         "moes_load": film.moes_load(film.largest_line_load),

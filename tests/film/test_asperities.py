@@ -46,4 +46,4 @@ def test_state_without_a_residual_raises():
     rough = problem()
     state = initial_state(rough, np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
     with pytest.raises(StepFailedError):
-        solve_newton(rough, state, SETTINGS, steady=False)
+        solve_newton(rough, None, SETTINGS, lambda: state)
