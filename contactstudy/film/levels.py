@@ -25,15 +25,7 @@ from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.newton import (
-    FilmProblem,
-    FilmSettings,
-    FilmSolution,
-    FilmState,
-    StepFailedError,
-    initial_state,
-    solve_newton,
-)
+from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, StepFailedError, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 from contactstudy.kernels.load import Load
 
@@ -101,10 +93,6 @@ class FilmResolution:
             if not shortest <= checks.positive(name, length := getattr(self, name)) <= longest:
                 hint = "`inlet` of solve_film is the position of a meniscus" if name == "inlet" else ""
                 raise InvalidInputError(name, length, f"from {shortest:g} to {longest:g} inlet lengths", hint)
-
-    def round_length(self, length: float) -> float:
-        """Nearest power of the ratio."""
-        return float(self.ratio ** np.round(np.log(length) / np.log(self.ratio)))
 
 
 RESOLUTION = FilmResolution()  # Default cells
@@ -237,13 +225,13 @@ class FilmCase:
         max_pressure = hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus)
         width = max_pressure / self.pressure_scale  # half-width of the line contact over the half-width
         inlet_length = width * (self.central_film / self.height_scale / width**2) ** (2 / 3)  # eq. (403)
-        return self.resolution.round_length(inlet_length)
+        ratio = self.resolution.ratio
+        return float(ratio ** np.round(np.log(inlet_length) / np.log(ratio)))
 
     @property
     def coarsest_level(self) -> Level:
         """Cells without refinement."""
-        closures = [(end, 0.0) for end in self.contact_ends]
-        return Level(cells=0, columns=0, closures=closures, inlet_length=self.inlet_length)
+        return Level(cells=0, columns=0, closures=[(x, 0.0) for x in self.contact_ends], inlet_length=self.inlet_length)
 
     def film_ratio(self, result: xr.Dataset) -> float:
         """Central film by Moes' formula over that of a film at another speed or with another lubricant."""
@@ -334,18 +322,11 @@ class Level(NamedTuple):
     closures: list[tuple[float, float]]  # positions x of narrow columns and widths, if wider than the narrowest, over a
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
-    def refined(self, direction: str, film: FilmCase, x: FloatArray, minima: Iterable[Minimum]) -> Level:
-        """Next level in a direction, of a film with columns at `x` and least films of both sides at `minima`."""
+    def refined(self, direction: str, film: FilmCase, minima: Iterable[Minimum]) -> Level:
+        """Next level in a direction, of a film with the least films of both sides at `minima`."""
         if direction == "cells":
             return self._replace(cells=self.cells + 1)
-        # The centres of the columns with the least films are equal for similar speeds.
-        closures = [
-            (
-                float(x[np.abs(x - minimum.position).argmin()]),
-                film.resolution.columns_inlet * film.resolution.round_length(minimum.length),
-            )
-            for minimum in minima
-        ]
+        closures = [(minimum.position, film.resolution.columns_inlet * minimum.length) for minimum in minima]
         return self._replace(columns=self.columns + 1, closures=[*film.coarsest_level.closures, *closures])
 
 
@@ -442,12 +423,9 @@ def film_on_level(
     def start_from_dry_contact() -> FilmState:
         contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
         # Cells enter the contact together but leave it one by one: interpolation would load cells outside.
-        refined = film.dry_contact
-        nearest = (
-            np.abs(positions[:, None] - centres).argmin(axis=1)
-            for positions, centres in ((grid.x, refined.shape.grid.x), (grid.y, refined.shape.grid.y))
-        )
-        dry = solve_normal(operator, contact, refined.pressure[np.ix_(*nearest)])
+        axes = (grid.x, film.dry_contact.shape.grid.x), (grid.y, film.dry_contact.shape.grid.y)
+        nearest = (np.abs(positions[:, None] - centres).argmin(axis=1) for positions, centres in axes)
+        dry = solve_normal(operator, contact, film.dry_contact.pressure[np.ix_(*nearest)])
         if not dry.converged:
             raise StepFailedError(f"the dry contact on its cells has not converged in {dry.applications} iterations")
         opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
@@ -455,7 +433,7 @@ def film_on_level(
         separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
         distance = merged.to_centres(opening[columns]) / height_scale + separation
         motion = np.append(separation, np.zeros(len(dry.motion) - 1)) - np.array(dry.motion) / height_scale
-        return initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
+        return problem.create_state(merged.average(dry.pressure[columns]) / p0, motion, distance)
 
     guess = None
     if isinstance(start, xr.Dataset):
@@ -481,7 +459,7 @@ def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSet
             level_film.problem.displace(load) - rotate(level_film.line_motion(film, load, film.tilt_centre).tilt)
         ),
     )
-    state = initial_state(problem, state.pressure, state.motion, state.distance)
+    state = problem.create_state(state.pressure, state.motion, state.distance)
     return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, lambda: state))
 
 
@@ -495,7 +473,7 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
         for values in (state.pressure, state.distance, np.log(start.solution.film))
     )
     distance = problem.solve_distance(np.exp(log_film), distance)
-    return initial_state(problem, np.maximum(pressure, 0.0), state.motion, distance)
+    return problem.create_state(np.maximum(pressure, 0.0), state.motion, distance)
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
@@ -513,7 +491,7 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
     loaded = pressure.ravel() > 0
     rigid_heights = (distance - problem.gap - problem.displace(pressure)).ravel()
     motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid_heights[loaded])[0], dtype=np.float64)
-    return initial_state(problem, pressure, motion, distance)
+    return problem.create_state(pressure, motion, distance)
 
 
 def _interpolate_field(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:

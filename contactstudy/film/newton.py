@@ -96,6 +96,11 @@ class FilmProblem:
         """Mean height of the film at a distance of the surfaces."""
         return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
 
+    def create_state(self, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
+        """Return a state with the mismatch of the given values."""
+        rigid = (motion @ self.motions).reshape(self.gap.shape)
+        return FilmState(pressure, motion, distance, distance - self.gap - self.displace(pressure) - rigid)
+
     def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
         """Distance of the surfaces at a mean film, by Newton's method for the film's logarithm from a `start`."""
         if self.mean_height is None:
@@ -116,12 +121,6 @@ class FilmState(NamedTuple):
     motion: FloatArray  # (motion): rigid motion, height and, if free, tilt
     distance: FloatArray  # (x, y): distance of the surfaces, unknown since a start may be interpolated from other cells
     mismatch: FloatArray  # (x, y): distance less the distance that pressure and motion cause
-
-
-def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
-    """Return a state with the mismatch of the given values."""
-    rigid = (motion @ problem.motions).reshape(problem.gap.shape)
-    return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
 
 
 class FilmSolution(NamedTuple):

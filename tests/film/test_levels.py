@@ -90,7 +90,7 @@ def test_columns_are_narrow_over_the_length_of_each_minimum():
     film = create_film_case(short_case(), resolution=COARSE)
     cells, _ = levels.create_cells(film, film.coarsest_level)
     minima = [levels.Minimum(1.0, 0.5, 0.1), levels.Minimum(1.0, 4.0, 2.0)]
-    refined, _ = levels.create_cells(film, film.coarsest_level.refined("columns", film, cells.x, minima))
+    refined, _ = levels.create_cells(film, film.coarsest_level.refined("columns", film, minima))
     sharp, flat = (refined.widths[np.abs(refined.x - minimum.position).argmin()] for minimum in minima)
     assert sharp == pytest.approx(0.5 * cells.widths.min(), rel=0.3)
     assert flat > 0.2 * 2.0
