@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -231,7 +231,7 @@ class FilmCase:
     @property
     def coarsest_level(self) -> Level:
         """Cells without refinement."""
-        return Level(cells=0, columns=0, closures=[(x, 0.0) for x in self.contact_ends], inlet_length=self.inlet_length)
+        return Level(cells=0, columns=0, closures=[], inlet_length=self.inlet_length)
 
     def film_ratio(self, result: xr.Dataset) -> float:
         """Central film by Moes' formula over that of a film at another speed or with another lubricant."""
@@ -306,28 +306,25 @@ class MergedCells:
         return stiffness
 
 
-class Minimum(NamedTuple):
-    """Minimum of a film along one axis."""
-
-    film: float
-    position: float
-    length: float  # distance from the minimum at which the logarithm of the film is greater by a half
-
-
 class Level(NamedTuple):
     """Cells of a film: numbers of refinements along y and of the columns, in the geometry of a case."""
 
     cells: int
     columns: int
-    closures: list[tuple[float, float]]  # positions x of narrow columns and widths, if wider than the narrowest, over a
+    closures: list[tuple[float, float]]  # positions x of least films and widths of columns before refinement, over a
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
-    def refined(self, direction: str, film: FilmCase, minima: Iterable[Minimum]) -> Level:
-        """Next level in a direction, of a film with the least films of both sides at `minima`."""
+    def refined(self, direction: str, film: FilmCase, minima: Iterable[tuple[float, float]]) -> Level:
+        """Next level in a direction, of a film with the least films of both sides at positions, over lengths."""
         if direction == "cells":
             return self._replace(cells=self.cells + 1)
-        closures = [(minimum.position, film.resolution.columns_inlet * minimum.length) for minimum in minima]
-        return self._replace(columns=self.columns + 1, closures=[*film.coarsest_level.closures, *closures])
+        # Each level halves the columns at the least films at least, even if the lengths grow.
+        widths = [width for _, width in self.closures] or [np.inf, np.inf]
+        closures = [
+            (position, min(width, film.resolution.columns_inlet * length))
+            for (position, length), width in zip(minima, widths, strict=True)
+        ]
+        return self._replace(columns=self.columns + 1, closures=closures)
 
 
 class FilmOnCells(NamedTuple):
@@ -354,11 +351,13 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     start, stop = (end / film.half_width for end in film.case.contact_range)
     min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
+    narrow = [(end, min_dx) for end in film.contact_ends]
+    narrow += [(closure, max(min_dx, column_scale * width)) for closure, width in level.closures]
+    max_width = min(resolution.widest_column, 0.2 * (stop - start))
 
     def column_width(x: float) -> float:
-        widths = ((abs(x - closure), max(min_dx, column_scale * width)) for closure, width in level.closures)
-        max_width = min(resolution.widest_column, 0.2 * (stop - start))
-        return float(min(max_width, *(width + growth * max(distance - 2 * width, 0.0) for distance, width in widths)))
+        widths = (width + growth * max(abs(x - position) - 2 * width, 0.0) for position, width in narrow)
+        return float(min(max_width, *widths))
 
     x_edges = graded_edges(start, stop, column_width)
     delta, half_width = level.inlet_length, film.contact_half_width
@@ -399,10 +398,8 @@ def film_on_level(
     def displace(load: FloatArray) -> FloatArray:
         body_load = np.zeros(grid.shape)
         body_load[columns] = p0 * load
-        loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
-        return operator(loads)[columns] / height_scale
+        return operator({Load.NORMAL: body_load})[columns] / height_scale
 
-    unit_load = np.tile(np.eye(1, grid.cells_y), (cells.shape[0], 1))
     # The tilt refers to the reference lines, here under the dry contact, the height to the bodies far away.
     gap = shape.gap.values - RigidMotion(0.0, film.dry_contact.motions.total.tilt).height(grid.x - film.tilt_centre)
     resultants = shape.prescribed.resultants(grid)
@@ -412,7 +409,7 @@ def film_on_level(
         fluid=film.fluid,
         gap=merged.to_centres(gap[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
-        column_stiffness=merged.compute_stiffness(displace(unit_load)),
+        column_stiffness=merged.compute_stiffness(displace(np.tile(np.eye(1, grid.cells_y), (cells.shape[0], 1)))),
         load=film.case.normal_load / (p0 * a**2),
         lever=None if resultants.lever is None else resultants.lever[columns, 0],
         central_film=film.central_film / height_scale,

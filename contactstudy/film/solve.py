@@ -27,7 +27,6 @@ from contactstudy.film.levels import (
     FilmOnCells,
     FilmResolution,
     Level,
-    Minimum,
     continue_solution,
     film_on_level,
 )
@@ -184,6 +183,14 @@ def create_film_case(
 FILM_NAMES = ("central_film", "least_film_middle", "least_film_first", "least_film_last", "least_film")
 
 
+class Minimum(NamedTuple):
+    """Minimum of a film along one axis."""
+
+    film: float
+    position: float
+    length: float  # distance from the minimum at which the logarithm of the film is greater by a half
+
+
 class Films(NamedTuple):
     """Film thicknesses over the height scale, and their positions over the half-width."""
 
@@ -232,7 +239,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
         if error <= accuracy or not directions:
             return refined
         direction = max(directions, key=lambda name: float((direction_errors[name] * thicknesses).max()))
-        level = level.refined(direction, film, (films.first, films.last))
+        level = level.refined(direction, film, (films.first[1:], films.last[1:]))
         former = thicknesses
 
 
@@ -268,15 +275,12 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
     is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
     ratios = np.array([float(start[name] / start["central_film"]) for name in FILM_NAMES])
     for name in sorted(DIRECTIONS, key=lambda name: -float((direction_errors[name] * ratios).max())):
-        if (
-            _combine_errors(direction_errors, ratios).max() > accuracy
-            and getattr(level, name) < film.resolution.levels - 1
-        ):
+        error = _combine_errors(direction_errors, ratios).max()
+        if error > accuracy and getattr(level, name) < film.resolution.levels - 1:
             level = level._replace(**{name: getattr(level, name) + 1})
             direction_errors[name] *= NEXT_RATIO
-    if any(recorded.get(name) != value for name, value in film.settings.items()) or not is_near:
-        return None
-    if _combine_errors(direction_errors, ratios).max() > accuracy:
+    has_settings = all(recorded.get(name) == value for name, value in film.settings.items())
+    if not (is_near and has_settings) or _combine_errors(direction_errors, ratios).max() > accuracy:
         return None
     try:
         level_film = film_on_level(film, level, settings, start)

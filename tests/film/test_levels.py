@@ -89,8 +89,10 @@ def test_columns_are_narrow_over_the_length_of_each_minimum():
     """Columns of 0.01 a at the flat least film of a tilted roller (random seed 1056) stopped Newton."""
     film = create_film_case(short_case(), resolution=COARSE)
     cells, _ = levels.create_cells(film, film.coarsest_level)
-    minima = [levels.Minimum(1.0, 0.5, 0.1), levels.Minimum(1.0, 4.0, 2.0)]
-    refined, _ = levels.create_cells(film, film.coarsest_level.refined("columns", film, minima))
-    sharp, flat = (refined.widths[np.abs(refined.x - minimum.position).argmin()] for minimum in minima)
-    assert sharp == pytest.approx(0.5 * cells.widths.min(), rel=0.3)
-    assert flat > 0.2 * 2.0
+    minima = [(0.5, 0.1), (3.0, 1.5)]  # positions and lengths
+    once = film.coarsest_level.refined("columns", film, minima)
+    twice = once.refined("columns", film, [(position, 3 * length) for position, length in minima])
+    refined, refined_twice = (levels.create_cells(film, level)[0] for level in (once, twice))
+    for (position, _), width in zip(minima, (0.5 * cells.widths.min(), 0.6), strict=True):
+        columns = [cells.widths[np.abs(cells.x - position).argmin()] for cells in (refined, refined_twice)]
+        assert columns == pytest.approx([width, 0.5 * width], rel=0.3)
