@@ -2,8 +2,8 @@
 
 Crowned rollers with numbers M from 5 to 2000 and L from 2 to 16. Where the film of smooth surfaces closes, asperities
 carry the load. ``--first N --cases 1`` runs one seed; the peak memory is that of all seeds so far. ``--finer`` compares
-the stated errors with the change to cells of a quarter of the size along y and half the size in columns, of films with
-M up to 80 on contacts of up to 90 a.
+the stated errors with the change by three further refinements along y and two of the columns, of films with M up to 80
+on contacts of up to 90 a.
 """
 
 from __future__ import annotations
@@ -20,22 +20,17 @@ import numpy as np
 import contactstudy as cs
 from benchmarks.fuzz.shapes import magnitude
 from benchmarks.performance.memory import peak
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.film import Asperities, solve_film
-from contactstudy.film.levels import RESOLUTION, moes_line
+from contactstudy.film.levels import Level, continue_solution, film_on_level, moes_line
+from contactstudy.film.newton import SETTINGS
+from contactstudy.film.solve import FILM_NAMES, compute_films, create_film_case
 
 STEEL = cs.Material(210e9, 0.3)
 RADIUS = 5e-3
 VISCOSITY = 0.05
 MAX_LOAD, MAX_LENGTH = 80.0, 90.0  # Number M and length over a of films that are compared with finer cells
-FILMS = ("central_film", "least_film", "least_film_middle", "least_film_first", "least_film_last")
-QUARTERED_SETTINGS = ("finest", "finest_share", "inner", "inner_inlet")
-HALVED_SETTINGS = ("growth", "columns", "columns_inlet")
-FINER = replace(
-    RESOLUTION,
-    **{name: 0.25 * getattr(RESOLUTION, name) for name in QUARTERED_SETTINGS},
-    **{name: 0.5 * getattr(RESOLUTION, name) for name in HALVED_SETTINGS},
-)
-COARSE_ACCURACY = 0.2  # Accuracy of the films on finer cells, which the fewest levels reach
+FURTHER_CELLS, FURTHER_COLUMNS = 3, 2  # Refinements of the films for comparison beyond the last level
 
 
 def random_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
@@ -128,9 +123,14 @@ def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]]
     case = random_case(Random(seed))
     if moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
         return None
-    film = solve_film(case, accuracy=accuracy)
-    finer = solve_film(case, accuracy=COARSE_ACCURACY, resolution=FINER, start=film)
-    return {name: (float(film[f"{name}_error"]), float(abs(finer[name] - film[name]))) for name in FILMS}
+    result, film = solve_film(case, accuracy=accuracy), create_film_case(case)
+    level = Level(**attribute(result, INPUTS_ATTRIBUTE)["settings"]["level"])
+    finer_level = level._replace(cells=level.cells + FURTHER_CELLS, columns=level.columns + FURTHER_COLUMNS)
+    finer = compute_films(film, continue_solution(film, film_on_level(film, finer_level, SETTINGS, result), SETTINGS))
+    return {
+        name: (float(result[f"{name}_error"]), abs(film.height_scale * thickness - float(result[name])))
+        for name, thickness in zip(FILM_NAMES, finer.thicknesses.tolist(), strict=True)
+    }
 
 
 def report_errors(seeds: range, accuracy: float) -> int:
@@ -139,14 +139,14 @@ def report_errors(seeds: range, accuracy: float) -> int:
     for seed in seeds:
         try:
             errors = compare_errors(seed, accuracy)
-        except cs.FilmError as error:
+        except cs.ContactStudyError as error:
             print(f"seed {seed}: {error}", flush=True)
             continue
         if errors is not None:
             compared.append(errors)
             texts = (f"{name} {stated:.2g} m against {change:.2g}" for name, (stated, change) in errors.items())
             print(f"seed {seed}: {', '.join(texts)}", flush=True)
-    for name in FILMS:
+    for name in FILM_NAMES:
         pairs = [errors[name] for errors in compared]
         covered = sum(change <= stated for stated, change in pairs)
         median = np.median([stated / max(change, 1e-12) for stated, change in pairs])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -25,7 +25,7 @@ from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, initial_state, solve_newton
+from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, StepFailedError, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 from contactstudy.kernels.load import Load
 
@@ -231,7 +231,7 @@ class FilmCase:
     @property
     def coarsest_level(self) -> Level:
         """Cells without refinement."""
-        return Level(cells=0, columns=0, closures=[*self.contact_ends], inlet_length=self.inlet_length)
+        return Level(cells=0, columns=0, closures=[], inlet_length=self.inlet_length)
 
     def film_ratio(self, result: xr.Dataset) -> float:
         """Central film by Moes' formula over that of a film at another speed or with another lubricant."""
@@ -311,15 +311,20 @@ class Level(NamedTuple):
 
     cells: int
     columns: int
-    closures: list[float]  # positions x of the narrowest columns over the half-width
+    closures: list[tuple[float, float]]  # positions x of least films and widths of columns before refinement, over a
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
-    def refined(self, direction: str, film: FilmCase, x: FloatArray, minima: Iterable[float]) -> Level:
-        """Next level in a direction, of a film with columns at `x` and least films of both sides at `minima`."""
-        # The centres of the columns with the least films are equal for similar speeds.
-        nearest = (float(x[np.abs(x - position).argmin()]) for position in minima)
-        closures = self.closures if direction == "cells" else [*film.contact_ends, *nearest]
-        return self._replace(closures=closures, **{direction: getattr(self, direction) + 1})
+    def refined(self, direction: str, film: FilmCase, minima: Iterable[tuple[float, float]]) -> Level:
+        """Next level in a direction, of a film with the least films of both sides at positions, over lengths."""
+        if direction == "cells":
+            return self._replace(cells=self.cells + 1)
+        # Each level halves the columns at the least films at least, even if the lengths grow.
+        widths = [width for _, width in self.closures] or [np.inf, np.inf]
+        closures = [
+            (position, min(width, film.resolution.columns_inlet * length))
+            for (position, length), width in zip(minima, widths, strict=True)
+        ]
+        return self._replace(columns=self.columns + 1, closures=closures)
 
 
 class FilmOnCells(NamedTuple):
@@ -346,11 +351,13 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     start, stop = (end / film.half_width for end in film.case.contact_range)
     min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
+    narrow = [(end, min_dx) for end in film.contact_ends]
+    narrow += [(closure, max(min_dx, column_scale * width)) for closure, width in level.closures]
+    max_width = min(resolution.widest_column, 0.2 * (stop - start))
 
     def column_width(x: float) -> float:
-        nearest = min(abs(x - closure) for closure in level.closures)
-        max_width = min(resolution.widest_column, 0.2 * (stop - start))
-        return float(min(min_dx + growth * max(nearest - 2 * min_dx, 0.0), max_width))
+        widths = (width + growth * max(abs(x - position) - 2 * width, 0.0) for position, width in narrow)
+        return float(min(max_width, *widths))
 
     x_edges = graded_edges(start, stop, column_width)
     delta, half_width = level.inlet_length, film.contact_half_width
@@ -378,7 +385,7 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
 def film_on_level(
     film: FilmCase, level: Level, settings: FilmSettings, start: FilmOnCells | xr.Dataset | None = None
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, to its tolerance, from the dry contact or from another film."""
+    """Solve for the film on the cells of a level, to its tolerance, from another film or else from the dry contact."""
     cells, merged = create_cells(film, level)
     a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
     window = a * float(cells.y_edges[0]), a * float(cells.y_edges[-1])
@@ -391,10 +398,8 @@ def film_on_level(
     def displace(load: FloatArray) -> FloatArray:
         body_load = np.zeros(grid.shape)
         body_load[columns] = p0 * load
-        loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
-        return operator(loads)[columns] / height_scale
+        return operator({Load.NORMAL: body_load})[columns] / height_scale
 
-    unit_load = np.tile(np.eye(1, grid.cells_y), (cells.shape[0], 1))
     # The tilt refers to the reference lines, here under the dry contact, the height to the bodies far away.
     gap = shape.gap.values - RigidMotion(0.0, film.dry_contact.motions.total.tilt).height(grid.x - film.tilt_centre)
     resultants = shape.prescribed.resultants(grid)
@@ -404,34 +409,36 @@ def film_on_level(
         fluid=film.fluid,
         gap=merged.to_centres(gap[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
-        column_stiffness=merged.compute_stiffness(displace(unit_load)),
+        column_stiffness=merged.compute_stiffness(displace(np.tile(np.eye(1, grid.cells_y), (cells.shape[0], 1)))),
         load=film.case.normal_load / (p0 * a**2),
         lever=None if resultants.lever is None else resultants.lever[columns, 0],
         central_film=film.central_film / height_scale,
         asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
         mean_height=None if rough is None else rough.mean_height(height_scale),
     )
-    if start is None:
+
+    def start_from_dry_contact() -> FilmState:
         contact = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=film.resolution.dry_tolerance)
         # Cells enter the contact together but leave it one by one: interpolation would load cells outside.
-        refined = film.dry_contact
-        nearest = (
-            np.abs(positions[:, None] - centres).argmin(axis=1)
-            for positions, centres in ((grid.x, refined.shape.grid.x), (grid.y, refined.shape.grid.y))
-        )
-        dry = solve_normal(operator, contact, refined.pressure[np.ix_(*nearest)])
+        axes = (grid.x, film.dry_contact.shape.grid.x), (grid.y, film.dry_contact.shape.grid.y)
+        nearest = (np.abs(positions[:, None] - centres).argmin(axis=1) for positions, centres in axes)
+        dry = solve_normal(operator, contact, film.dry_contact.pressure[np.ix_(*nearest)])
+        if not dry.converged:
+            raise StepFailedError(f"the dry contact on its cells has not converged in {dry.applications} iterations")
         opening = gap + operator({Load.NORMAL: dry.pressure}) - contact.rigid_height(dry.motion)
         # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
         separation = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
         distance = merged.to_centres(opening[columns]) / height_scale + separation
         motion = np.append(separation, np.zeros(len(dry.motion) - 1)) - np.array(dry.motion) / height_scale
-        state = initial_state(problem, merged.average(dry.pressure[columns]) / p0, motion, distance)
-    elif isinstance(start, xr.Dataset):
-        state = _convert_result(film, start, problem)
-    else:
-        state = _transfer_state(start, problem)
+        return problem.create_state(merged.average(dry.pressure[columns]) / p0, motion, distance)
+
+    guess = None
+    if isinstance(start, xr.Dataset):
+        guess = _convert_result(film, start, problem)
+    elif start is not None:
+        guess = _transfer_state(start, problem)
     settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
-    solution = solve_newton(problem, state, settings, steady=start is not None)
+    solution = solve_newton(problem, guess, settings, start_from_dry_contact)
     return FilmOnCells(level=level, problem=problem, solution=solution, shape=shape, columns=columns, merged=merged)
 
 
@@ -449,8 +456,8 @@ def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSet
             level_film.problem.displace(load) - rotate(level_film.line_motion(film, load, film.tilt_centre).tilt)
         ),
     )
-    state = initial_state(problem, state.pressure, state.motion, state.distance)
-    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, steady=True))
+    state = problem.create_state(state.pressure, state.motion, state.distance)
+    return level_film._replace(problem=problem, solution=solve_newton(problem, state, settings, lambda: state))
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
@@ -463,7 +470,7 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
         for values in (state.pressure, state.distance, np.log(start.solution.film))
     )
     distance = problem.solve_distance(np.exp(log_film), distance)
-    return initial_state(problem, np.maximum(pressure, 0.0), state.motion, distance)
+    return problem.create_state(np.maximum(pressure, 0.0), state.motion, distance)
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
@@ -481,7 +488,7 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
     loaded = pressure.ravel() > 0
     rigid_heights = (distance - problem.gap - problem.displace(pressure)).ravel()
     motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid_heights[loaded])[0], dtype=np.float64)
-    return initial_state(problem, pressure, motion, distance)
+    return problem.create_state(pressure, motion, distance)
 
 
 def _interpolate_field(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 from contactstudy.film.levels import moes_line
-from contactstudy.film.newton import SETTINGS, FilmProblem, FilmSolution, initial_state, solve_newton
+from contactstudy.film.newton import SETTINGS, FilmProblem, FilmSolution, FilmState, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
@@ -76,15 +76,18 @@ def solve_line(
         lever=None,
         central_film=central_film,
     )
-    if start is not None:
-        pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
-        state = initial_state(problem, pressure, start.solution.state.motion, film_start)
-    else:
+
+    def start_from_hertz_pressure() -> FilmState:
         hertz_pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
         deformed_gap = problem.gap + problem.displace(hertz_pressure)
         motion = np.array([central_film - deformed_gap[0, np.abs(y).argmin()]])
-        state = initial_state(problem, hertz_pressure, motion, np.maximum(deformed_gap + motion[0], central_film))
-    solution = solve_newton(problem, state, SETTINGS, steady=start is not None)
+        return problem.create_state(hertz_pressure, motion, np.maximum(deformed_gap + motion[0], central_film))
+
+    guess = None
+    if start is not None:
+        pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
+        guess = problem.create_state(pressure, start.solution.state.motion, film_start)
+    solution = solve_newton(problem, guess, SETTINGS, start_from_hertz_pressure)
     height = solution.film[0]
     thinnest_cell = int(height.argmin())
     neighbours = slice(thinnest_cell - 1, thinnest_cell + 2)

@@ -96,6 +96,11 @@ class FilmProblem:
         """Mean height of the film at a distance of the surfaces."""
         return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
 
+    def create_state(self, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
+        """Return a state with the mismatch of the given values."""
+        rigid = (motion @ self.motions).reshape(self.gap.shape)
+        return FilmState(pressure, motion, distance, distance - self.gap - self.displace(pressure) - rigid)
+
     def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
         """Distance of the surfaces at a mean film, by Newton's method for the film's logarithm from a `start`."""
         if self.mean_height is None:
@@ -116,12 +121,6 @@ class FilmState(NamedTuple):
     motion: FloatArray  # (motion): rigid motion, height and, if free, tilt
     distance: FloatArray  # (x, y): distance of the surfaces, unknown since a start may be interpolated from other cells
     mismatch: FloatArray  # (x, y): distance less the distance that pressure and motion cause
-
-
-def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
-    """Return a state with the mismatch of the given values."""
-    rigid = (motion @ problem.motions).reshape(problem.gap.shape)
-    return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
 
 
 class FilmSolution(NamedTuple):
@@ -161,15 +160,17 @@ class _LinearisedEquations(NamedTuple):
     film: FloatArray
 
 
-def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings, *, steady: bool) -> FilmSolution:
-    """Solve for the film from a start; if `steady`, by pseudo-time steps only if the steady iteration fails."""
+def solve_newton(
+    problem: FilmProblem, guess: FilmState | None, settings: FilmSettings, make_start: Callable[[], FilmState]
+) -> FilmSolution:
+    """Solve for the film from a guess; without one, or if its iteration fails, by pseudo-time steps from a start."""
     iteration = _Iteration(problem, settings)
-    if steady:
+    if guess is not None:
         try:
-            return iteration.converge(start, np.inf, None)
+            return iteration.converge(guess, np.inf, None)
         except StepFailedError:
-            LOGGER.info("the start is too far: pseudo-time steps")
-    state = start
+            LOGGER.info("the guess is too far: pseudo-time steps")
+    state = make_start()
     pending_steps = list(settings.steps)
     while pending_steps:
         step = pending_steps[0]

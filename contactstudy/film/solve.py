@@ -34,8 +34,10 @@ from contactstudy.film.newton import SETTINGS, FilmSettings, FilmSolution, StepF
 from contactstudy.threads import one_blas_thread
 
 ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach
-ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}  # Stated error over the latest change by a refinement. Accuracy
-CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}  # Ratio of successive changes, for errors of second order. Accuracy
+DIRECTIONS = ("cells", "columns")  # of refinement
+CELLS_SAFETY = 1.5  # Stated error along y over that of cells of second order. Accuracy
+ORDER_RATIOS = 0.25, 0.5  # Ratios of successive changes by columns half as wide, of second and of first order. Accuracy
+NEXT_RATIO = 0.5  # Ratio of the errors on two levels of the same direction, at most. Accuracy
 MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy
 VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics
 
@@ -122,15 +124,14 @@ def solve_film(
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
     try:
         with one_blas_thread():
-            level_film, direction_errors, solutions = _refine(film, limit, settings, start)
-            level_film = continue_solution(film, level_film, settings)
+            refined = _refine(film, limit, settings, start)
+            level_film = continue_solution(film, refined.level_film, settings)
     except StepFailedError as error:
         raise _create_film_error(error, film.half_width) from None
-    films, solutions = compute_films(film, level_film), [*solutions, level_film.solution]
-    refined = _RefinedFilm(level_film, films, direction_errors, solutions)
+    refined = refined._replace(level_film=level_film, solutions=[*refined.solutions, level_film.solution])
     result = _label_film(film, refined)
     seconds = time.perf_counter() - start_time
-    relative_error = max(refined.errors.values()) / refined.films.central_film
+    relative_error = max(float(result[f"{name}_error"]) for name in FILM_NAMES) / float(result["central_film"])
     if relative_error > limit:
         warnings.warn(
             f"the films have converged to {relative_error:.2g} of the central film, not to accuracy = {limit:g}: "
@@ -138,11 +139,11 @@ def solve_film(
             ConvergenceWarning,
             stacklevel=2,
         )
-    _warn_of_viscosity(film, refined.level_film)
+    _warn_of_viscosity(film, level_film)
     described = describe(result, "lubricated contact of a roller with an elastic body")
     labelled = without_error(described, "slice_film", "approach", "tilt")
     errors = {name: values.tolist() for name, values in refined.direction_errors.items()}
-    cells = {"level": refined.level_film.level._asdict(), "direction_errors": errors}
+    cells = {"level": level_film.level._asdict(), "direction_errors": errors}
     recorded_arguments = {"accuracy": limit, **film.settings, **cells}
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
@@ -179,82 +180,80 @@ def create_film_case(
     return film
 
 
+FILM_NAMES = ("central_film", "least_film_middle", "least_film_first", "least_film_last", "least_film")
+
+
+class Minimum(NamedTuple):
+    """Minimum of a film along one axis."""
+
+    film: float
+    position: float
+    length: float  # distance from the minimum at which the logarithm of the film is greater by a half
+
+
 class Films(NamedTuple):
-    """Film thicknesses over the height scale, by their names in a result, and their positions over the half-width."""
+    """Film thicknesses over the height scale, and their positions over the half-width."""
 
     central_film: float
     least_film_middle: float
-    least_film_first: float
-    least_film_last: float
-    least_film: float
-    first_x: float
-    last_x: float
-    least_x: float
+    first: Minimum
+    last: Minimum
+    least: Minimum
     least_y: float
 
     @property
     def thicknesses(self) -> FloatArray:
-        """Films without positions."""
-        return np.array(self[: len(FILM_NAMES)])
-
-
-FILM_NAMES = Films._fields[:5]
+        """Films in the order of `FILM_NAMES`."""
+        return np.array([self.central_film, self.least_film_middle, self.first.film, self.last.film, self.least.film])
 
 
 class _RefinedFilm(NamedTuple):
-    """Film on the finest level, its values, and the solutions of all levels."""
+    """Film on the finest level, relative errors by the direction of refinement, solutions of all levels."""
 
     level_film: FilmOnCells
-    films: Films
-    direction_errors: dict[str, FloatArray]  # by the direction of refinement: relative errors of the films
+    direction_errors: dict[str, FloatArray]
     solutions: list[FilmSolution]
 
-    @property
-    def errors(self) -> dict[str, float]:
-        """Errors by the film's name."""
-        errors = _combine_errors(self.direction_errors, self.films.thicknesses)
-        return dict(zip(FILM_NAMES, errors.tolist(), strict=True))
 
-
-# Film on the finest level, relative errors of the films by the direction of refinement, solutions of all levels
-_Levels = tuple[FilmOnCells, dict[str, FloatArray], list[FilmSolution]]
-
-
-def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Levels:
+def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
-    if start is not None and (levels := _continue_film(film, accuracy, settings, start)) is not None:
-        return levels
-    level = film.coarsest_level
-    level_film: FilmOnCells | None = None
-    solutions: list[FilmSolution] = []
-    films: list[Films] = []
-    changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in ERROR_FACTORS}
-    direction, direction_errors = "", {name: change[0] for name, change in changes.items()}
+    if start is not None and (continued := _continue_film(film, accuracy, settings, start)) is not None:
+        return continued
+    level, refined, former, direction = film.coarsest_level, None, np.zeros(len(FILM_NAMES)), ""
+    changes: dict[str, list[FloatArray]] = {name: [] for name in ("", *DIRECTIONS)}
     while True:
         try:
-            level_film = film_on_level(film, level, settings, level_film or start)
+            level_film = film_on_level(film, level, settings, refined.level_film if refined else start)
         except StepFailedError:
-            if level_film is None and start is not None:
-                return _refine(film, accuracy, settings)
-            if level_film is None or np.isinf([*direction_errors.values()]).any():
+            if refined is None or np.isinf([*refined.direction_errors.values()]).any():
                 raise
-            break
-        solutions.append(level_film.solution)
-        films.append(compute_films(film, level_film))
-        if direction:
-            changes[direction].append(np.abs(films[-1].thicknesses - films[-2].thicknesses))
-        # Of the latest two changes by refinement in one direction one may vanish by chance.
-        direction_errors = {
-            name: ERROR_FACTORS[name] * np.maximum(latest, CHANGE_RATIOS[name] * former) / films[-1].thicknesses
-            for name, (*_, former, latest) in changes.items()
-        }
-        error = _combine_errors(direction_errors, films[-1].thicknesses).max() / films[-1].central_film
-        directions = [name for name in ERROR_FACTORS if getattr(level, name) < film.resolution.levels - 1]
+            return refined
+        films = compute_films(film, level_film)
+        thicknesses = films.thicknesses
+        changes[direction].append(thicknesses - former)
+        direction_errors = {name: _estimate_errors(name, changes[name]) / thicknesses for name in DIRECTIONS}
+        solutions = [*(refined.solutions if refined else []), level_film.solution]
+        refined = _RefinedFilm(level_film, direction_errors, solutions)
+        directions = [name for name in DIRECTIONS if getattr(level, name) < film.resolution.levels - 1]
+        error = _combine_errors(direction_errors, thicknesses).max() / films.central_film
         if error <= accuracy or not directions:
-            break
-        direction = max(directions, key=lambda name: float((direction_errors[name] * films[-1].thicknesses).max()))
-        level = level.refined(direction, film, level_film.problem.cells.x, (films[-1].first_x, films[-1].last_x))
-    return level_film, direction_errors, solutions
+            return refined
+        direction = max(directions, key=lambda name: float((direction_errors[name] * thicknesses).max()))
+        level = level.refined(direction, film, (films.first[1:], films.last[1:]))
+        former = thicknesses
+
+
+def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
+    """Errors of the films from their latest two changes by refinement in a direction; infinite before."""
+    if len(changes) < 2:
+        return np.full(len(FILM_NAMES), np.inf)
+    former, latest = np.abs(changes[-2:])
+    if direction == "cells":
+        # Two refinements halve every cell along y, one refinement halves some, since cells merge in powers of two.
+        return np.asarray(CELLS_SAFETY / 3 * (former + latest))
+    ratio = np.clip(latest / np.maximum(former, 1e-300), *ORDER_RATIOS)
+    # The latest change may vanish by chance.
+    return np.asarray(np.maximum(latest, ORDER_RATIOS[0] * former) * ratio / (1 - ratio))
 
 
 def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:
@@ -262,7 +261,7 @@ def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatA
     return np.asarray((np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR) * thicknesses)
 
 
-def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _Levels | None:
+def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
     """Film on cells at most one refinement finer than those of a similar film; None if they do not suffice."""
     recorded = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
     try:
@@ -270,29 +269,24 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
         level = Level(**recorded["level"])
         # Errors are of second order in the cells over the inlet length, a power 2/3 of the film: eq. (403).
         growth = max(film.film_ratio(start) ** (-4 / 3), 1.0)
-        direction_errors = {name: growth * np.array(recorded["direction_errors"][name]) for name in ERROR_FACTORS}
+        direction_errors = {name: growth * np.array(recorded["direction_errors"][name]) for name in DIRECTIONS}
     except (InvalidInputError, KeyError, TypeError):
         return None
     is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
     ratios = np.array([float(start[name] / start["central_film"]) for name in FILM_NAMES])
-    x = start["x"].values / film.half_width
-    minima = [float(start[f"least_film_{side}_x"]) / film.half_width for side in ("first", "last")]
-    for name in sorted(ERROR_FACTORS, key=lambda name: -float((direction_errors[name] * ratios).max())):
-        if (
-            _combine_errors(direction_errors, ratios).max() > accuracy
-            and getattr(level, name) < film.resolution.levels - 1
-        ):
-            level = level.refined(name, film, x, minima)
-            direction_errors[name] *= CHANGE_RATIOS[name]
-    if any(recorded.get(name) != value for name, value in film.settings.items()) or not is_near:
-        return None
-    if _combine_errors(direction_errors, ratios).max() > accuracy:
+    for name in sorted(DIRECTIONS, key=lambda name: -float((direction_errors[name] * ratios).max())):
+        error = _combine_errors(direction_errors, ratios).max()
+        if error > accuracy and getattr(level, name) < film.resolution.levels - 1:
+            level = level._replace(**{name: getattr(level, name) + 1})
+            direction_errors[name] *= NEXT_RATIO
+    has_settings = all(recorded.get(name) == value for name, value in film.settings.items())
+    if not (is_near and has_settings) or _combine_errors(direction_errors, ratios).max() > accuracy:
         return None
     try:
         level_film = film_on_level(film, level, settings, start)
     except StepFailedError:
         return None
-    return level_film, direction_errors, [level_film.solution]
+    return _RefinedFilm(level_film, direction_errors, [level_film.solution])
 
 
 def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:
@@ -313,22 +307,18 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     mid_length = 0.5 * (low + high)
     within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
     column_minima = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
-    least_films, positions = np.transpose(column_minima)
+    least_films, positions, _ = np.transpose(column_minima)
     centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
-    side_minima = [_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side)]
-    (first, first_x), (last, last_x) = side_minima
-    least, least_x = min(side_minima)
+    first, last = (_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side))
+    least = min(first, last)
     return Films(
         central_film=_interpolate(cells.x, centre_films, mid_length),
         least_film_middle=_interpolate(cells.x, least_films, mid_length),
-        least_film_first=first,
-        least_film_last=last,
-        least_film=least,
-        first_x=first_x,
-        last_x=last_x,
-        least_x=least_x,
-        least_y=float(np.interp(least_x, cells.x, positions)),
+        first=first,
+        last=last,
+        least=least,
+        least_y=float(np.interp(least.position, cells.x, positions)),
     )
 
 
@@ -339,8 +329,8 @@ def _interpolate(x: FloatArray, films: FloatArray, position: float) -> float:
     return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ films[neighbours])
 
 
-def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> tuple[float, float]:
-    """Minimum and position in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
+def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> Minimum:
+    """Minimum in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
     cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
     spline = scipy.interpolate.CubicSpline(centres[neighbours], np.log(films[neighbours]))
@@ -348,7 +338,9 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
     positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
     minimum = int(logarithms.argmin())
-    return float(np.exp(logarithms[minimum])), float(positions[minimum])
+    curvature = float(spline(positions[minimum], 2))
+    length = curvature**-0.5 if curvature > 0 else float(edges[cell + 1] - edges[cell])
+    return Minimum(float(np.exp(logarithms[minimum])), float(positions[minimum]), length)
 
 
 def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
@@ -384,17 +376,20 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         fields[name] = expand(np.where(is_known, uniform_values, np.nan), np.nan)
     motion = compute_rigid_motion(film, solved)
     y = -grid.y[::-1] if mirrored else grid.y
-    films, errors = refined.films, refined.errors
+    films = compute_films(film, solved)
+    thicknesses = film.height_scale * films.thicknesses
+    errors = _combine_errors(refined.direction_errors, thicknesses).tolist()
     scalars: dict[str, float | int | bool] = {}
-    for name, thickness in zip(FILM_NAMES, films, strict=False):
-        scalars |= {name: film.height_scale * thickness, f"{name}_error": film.height_scale * errors[name]}
+    for name, thickness, error in zip(FILM_NAMES, thicknesses.tolist(), errors, strict=True):
+        scalars |= {name: thickness, f"{name}_error": error}
+    ends_error = scalars["least_film_error"] + scalars["least_film_middle_error"]
     scalars |= {
-        "end_film_ratio": films.least_film / films.least_film_middle,
-        "end_film_ratio_error": (errors["least_film"] + errors["least_film_middle"]) / films.least_film_middle,
-        "least_film_x": film.half_width * films.least_x,
+        "end_film_ratio": films.least.film / films.least_film_middle,
+        "end_film_ratio_error": ends_error / scalars["least_film_middle"],
+        "least_film_x": film.half_width * films.least.position,
         "least_film_y": sign * film.half_width * films.least_y,
-        "least_film_first_x": film.half_width * films.first_x,
-        "least_film_last_x": film.half_width * films.last_x,
+        "least_film_first_x": film.half_width * films.first.position,
+        "least_film_last_x": film.half_width * films.last.position,
         "entrainment_speed": film.speeds.entrainment,
         "slide_roll_ratio": film.speeds.slide_roll_ratio,
         "moes_load": film.moes_load(film.largest_line_load),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy.film import Asperities
-from contactstudy.film.newton import SETTINGS, FilmProblem, StepFailedError, initial_state, solve_newton
+from contactstudy.film.newton import SETTINGS, FilmProblem, StepFailedError, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 9), open_ends=False)
@@ -44,6 +44,6 @@ def test_distance_of_smooth_surfaces_equals_the_film():
 
 def test_state_without_a_residual_raises():
     rough = problem()
-    state = initial_state(rough, np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
+    state = rough.create_state(np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
     with pytest.raises(StepFailedError):
-        solve_newton(rough, state, SETTINGS, steady=False)
+        solve_newton(rough, None, SETTINGS, lambda: state)

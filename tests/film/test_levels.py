@@ -1,13 +1,41 @@
-"""First guesses of a film on its cells."""
+"""Cells of a film, and first guesses on them."""
 
+from dataclasses import replace
 from random import Random
 
+import numpy as np
 import pytest
 
+import contactstudy as cs
 from benchmarks.random_films import random_case
-from contactstudy.film import levels
+from contactstudy.film import levels, solve_film
 from contactstudy.film.newton import SETTINGS
 from contactstudy.film.solve import create_film_case
+
+COARSE = replace(
+    levels.RESOLUTION,
+    finest=1.1,
+    finest_share=0.24,
+    inner=0.32,
+    inner_inlet=5,
+    growth=0.2,
+    columns=0.24,
+    columns_inlet=0.8,
+)
+
+
+def short_case(**changes):
+    """A steel roller of 6 a with a crown on a flush body."""
+    steel = cs.Material(210e9, 0.3)
+    length = 6 * 65e-6
+    case = cs.Case(
+        body=cs.FiniteLengthSpace(length=length, material=steel),
+        roller=cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(amplitude=0.2e-6)),
+        max_pressure=1.5e9,
+        motion=cs.Sliding(body_speed=1.0, roller_speed=1.0),
+        lubricant=cs.Lubricant.preset("heavy machine oil", 60.0),
+    )
+    return replace(case, **changes)
 
 
 @pytest.mark.slow
@@ -18,7 +46,8 @@ def test_dry_start_converges_on_columns_of_a_thin_film(monkeypatch):
     class NewtonReachedError(Exception):
         pass
 
-    def stop(*_arguments, **_settings):
+    def stop(_problem, _guess, _settings, make_start):
+        make_start()
         raise NewtonReachedError
 
     def record(*arguments):
@@ -32,3 +61,38 @@ def test_dry_start_converges_on_columns_of_a_thin_film(monkeypatch):
     with pytest.raises(NewtonReachedError):
         levels.film_on_level(film, film.coarsest_level, SETTINGS)
     assert iterates[0].converged
+
+
+def test_dry_start_that_has_not_converged_raises(monkeypatch):
+    solve_normal = levels.solve_normal
+    monkeypatch.setattr(levels, "solve_normal", lambda *arguments: replace(solve_normal(*arguments), converged=False))
+    with pytest.raises(cs.FilmError, match=r"the dry contact on its cells has not converged in \d+ iterations"):
+        solve_film(short_case(), accuracy=0.2, resolution=COARSE)
+
+
+def test_guess_without_a_residual_gives_the_film_from_the_dry_contact(monkeypatch):
+    film = create_film_case(short_case(), resolution=COARSE)
+    level = film.coarsest_level
+    coarse = levels.film_on_level(film, level, SETTINGS)
+
+    def guess(*arguments):
+        state = transfer_state(*arguments)
+        return state._replace(distance=np.nan * state.distance)
+
+    transfer_state = levels._transfer_state
+    monkeypatch.setattr(levels, "_transfer_state", guess)
+    repeated = levels.film_on_level(film, level, SETTINGS, coarse)
+    assert repeated.solution.film == pytest.approx(coarse.solution.film, rel=1e-9)
+
+
+def test_columns_are_narrow_over_the_length_of_each_minimum():
+    """Columns of 0.01 a at the flat least film of a tilted roller (random seed 1056) stopped Newton."""
+    film = create_film_case(short_case(), resolution=COARSE)
+    cells, _ = levels.create_cells(film, film.coarsest_level)
+    minima = [(0.5, 0.1), (3.0, 1.5)]  # positions and lengths
+    once = film.coarsest_level.refined("columns", film, minima)
+    twice = once.refined("columns", film, [(position, 3 * length) for position, length in minima])
+    refined, refined_twice = (levels.create_cells(film, level)[0] for level in (once, twice))
+    for (position, _), width in zip(minima, (0.5 * cells.widths.min(), 0.6), strict=True):
+        columns = [cells.widths[np.abs(cells.x - position).argmin()] for cells in (refined, refined_twice)]
+        assert columns == pytest.approx([width, 0.5 * width], rel=0.3)

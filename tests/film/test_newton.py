@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy.film.line_contact import BARUS
-from contactstudy.film.newton import SETTINGS, FilmProblem, _Iteration, initial_state
+from contactstudy.film.newton import SETTINGS, FilmProblem, _Iteration
 from contactstudy.film.reynolds import FilmCells, Fluid
 
 
@@ -26,7 +26,7 @@ def test_step_is_bounded_relative_to_hertz_pressure_of_largest_column_load(end_p
     # Hertz' half-width over a is Hertz' pressure over p0.
     pressure = np.array([[p * np.sqrt(max(1 - (y / p) ** 2, 0.0)) for y in cells.y] for p in (1.0, end_pressure)])
     pressure[0, 1000] += 0.1 * end_pressure
-    state = initial_state(problem, pressure, np.ones(1), np.ones(cells.shape))
+    state = problem.create_state(pressure, np.ones(1), np.ones(cells.shape))
     change = np.append(np.where(pressure == pressure[1].max(), 0.6 * end_pressure, 0.0).ravel(), 0.0)
     next_state, fraction, largest_change = _Iteration(problem, SETTINGS).apply_step(state, change)
     assert largest_change == pytest.approx(0.6, rel=1e-3)

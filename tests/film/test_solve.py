@@ -11,7 +11,7 @@ from contactstudy import InvalidInputError
 from contactstudy.film import Asperities, FilmResolution, solve_film
 from contactstudy.film.levels import RESOLUTION, moes_line
 from contactstudy.film.line_contact import solve_line
-from contactstudy.film.solve import MIN_RELATIVE_ERROR, _find_minimum
+from contactstudy.film.solve import MIN_RELATIVE_ERROR, _estimate_errors, _find_minimum
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
 
@@ -351,6 +351,22 @@ def test_barus_oil_above_its_pressures_warns(crowned):
 
 def test_least_film_between_cells_is_positive():
     centres, edges = np.array([0.0, 1.0, 2.0]), np.array([-0.5, 0.5, 1.5, 2.5])
-    least, position = _find_minimum(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
+    least, position, _ = _find_minimum(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
     assert 0 < least < 0.01
     assert 0.5 < position < 1.0
+
+
+@pytest.mark.parametrize(
+    ("direction", "errors", "ratio"),
+    [
+        ("cells", [4.0, 2.0, 1.0], 1.5),  # second order
+        ("cells", [1.2, 3.0, 1.0], 1.9),  # equal on two levels by chance
+        ("columns", [16.0, 4.0, 1.0], 1.0),  # second order
+        ("columns", [9.0, 3.0, 1.0], 1.0),
+        ("columns", [4.0, 2.0, 1.0], 1.0),  # first order
+    ],
+)
+def test_stated_error_over_the_error_of_the_last_of_three_levels(direction, errors, ratio):
+    changes = [np.full(5, change) for change in np.diff(errors)]
+    assert _estimate_errors(direction, changes) == pytest.approx(np.full(5, ratio))
+    assert np.isinf(_estimate_errors(direction, changes[:1])).all()
