@@ -324,7 +324,8 @@ def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) ->
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
     nu, modes, depth = loads.poisson, loads.modes, loads.depth
-    lateral, kappa, tau, along_z = _face_waves(loads, z)
+    lateral = np.repeat(loads.lateral, loads.counts)
+    kappa, tau, along_z = _face_waves(loads, lateral, z)
     (decay, even_growth), (_, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
     potential = (1 - 2 * nu) * decay - even_growth
     lateral_part = 2 * nu * decay
@@ -339,12 +340,13 @@ def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) ->
     return _field_of_face_load(loads, along_x, along_z)
 
 
-def _face_waves(loads: AuxiliaryLoads, z: FloatArray) -> tuple[FloatArray, ComplexArray, ComplexArray, ComplexArray]:
-    """``k_y``, ``kappa``, ``tau`` of depth wavenumbers, and waves (depth, z) of V from either face per unit load."""
-    lateral = np.repeat(loads.lateral, loads.counts)
+def _face_waves(
+    loads: AuxiliaryLoads, lateral: FloatArray, z: FloatArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z) of V from either face per unit load."""
     kappa = np.sqrt(loads.depth**2 + lateral**2)
     amplitude, tau = loads.modes.face_amplitude(kappa)
-    return lateral, kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
+    return kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(loads.depth, z))
 
 
 def _sums_over_ends(
@@ -391,7 +393,8 @@ def _displacement_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArr
     """``2 G u`` of V under the face loads on its two ends: (load, 3, x, z, node, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
     nu, modes, depth = loads.poisson, loads.modes, loads.depth
-    lateral, kappa, tau, along_z = _face_waves(loads, z)
+    lateral = np.repeat(loads.lateral, loads.counts)
+    kappa, tau, along_z = _face_waves(loads, lateral, z)
     (decay, growth), (odd_decay, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
     potential = (1 - 2 * nu) * decay - growth  # eq. (10)
     along_x = np.empty((3, x.size, depth.size), np.complex128)

@@ -393,8 +393,7 @@ COLUMN_ERROR_FACTOR = 0.5
 and creepages themselves. Accuracy: without this error one in ten of the stated errors was too small."""
 
 EDGE_ERROR_FACTOR = 1.0
-"""Error of the leading edge of unlike bodies in rolling, times the cells across the contact, over Dundurs' beta and the
-scale of a value. Accuracy: twice the root mean square over positions of the cells."""
+"""Error of the leading edge in rolling, times the cells across, over Dundurs' beta and a value's scale. Accuracy."""
 
 MAX_COARSE_STEPS = 60
 """Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
