@@ -20,13 +20,11 @@ from contactstudy.errors import InvalidInputError
 # Dimensionless groups, in the order of the coordinates of the interpolation
 GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
 # Interpolated quantities
-QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
+QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "stiffness_ratio", "end_load_ratio")
 # Quantities whose logarithm is interpolated: their errors are relative
-LOGARITHMIC_QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
+LOGARITHMIC_QUANTITIES = QUANTITIES[:-1]
 NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these points belongs to the branch
 RESIDUAL_COUNT = 12  # Nearest points whose mean residual is the local error
-LOAD_STEP = 0.05  # Relative change of the half-width for the slope of the approach
-LOAD_RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
 
 def atlas(
@@ -60,8 +58,8 @@ def atlas(
         `peak_pressure_ratio` and `peak_von_mises_ratio` over p0, `approach_ratio` over ``a**2 / R``,
         `stiffness_ratio` dP/d(approach) over ``E* L`` at a constant rotation, and `end_load_ratio`, the load on the
         last half-width of the deeper end over the mean load per half-width; each with its error
-        ``<name>_error``, of solver and interpolation, which covers 95 % of 396 other points, of the stiffness 91 % of
-        66. DataArrays are broadcast; other arrays of one dimension have the dimension `point`.
+        ``<name>_error``, of solver and interpolation, which covers 96 % of 1000 other points. DataArrays are broadcast;
+        other arrays of one dimension have the dimension `point`.
 
     Raises
     ------
@@ -180,17 +178,6 @@ class AtlasTable:
             is_logarithmic = name in LOGARITHMIC_QUANTITIES
             ratios[name] = np.exp(interpolated) if is_logarithmic else np.maximum(interpolated, 0.0)
             ratios[f"{name}_error"] = error * ratios[name] if is_logarithmic else error
-        # Slope of the approach over the load, in logarithms of both, at constant lengths in metres: with the half-width
-        # s a the groups are L/(s a), e/(s a), A R/(s a)**2, ..., and the load grows with s**2.
-        lower_approach, higher_approach = (
-            self.interpolate("approach_ratio", self.coordinates(points / np.array([s, s, s**2, s**2, 1])))[0]
-            for s in (1 - LOAD_STEP, 1 + LOAD_STEP)
-        )
-        slope = 1 + (higher_approach - lower_approach) / LOAD_RISE
-        ratios["stiffness_ratio"] = np.pi / (4 * ratios["approach_ratio"] * slope)
-        # The errors of the approach at both ends of the step are independent.
-        relative_error = ratios["approach_ratio_error"] / ratios["approach_ratio"]
-        ratios["stiffness_ratio_error"] = ratios["stiffness_ratio"] * np.sqrt(2) * relative_error / (LOAD_RISE * slope)
         return ratios
 
 
