@@ -19,9 +19,8 @@ from contactstudy.errors import InvalidInputError
 
 # Dimensionless groups, in the order of the coordinates of the interpolation
 GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
-# Interpolated quantities
+# Interpolated quantities; the logarithm of all but the last is interpolated, and their errors are relative
 QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "stiffness_ratio", "end_load_ratio")
-# Quantities whose logarithm is interpolated: their errors are relative
 LOGARITHMIC_QUANTITIES = QUANTITIES[:-1]
 NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these points belongs to the branch
 RESIDUAL_COUNT = 12  # Nearest points whose mean residual is the local error

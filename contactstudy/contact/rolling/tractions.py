@@ -37,8 +37,7 @@ from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 
 MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
 EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
-DEPENDENT_OFFSET, SLIPPING_OFFSET = 0.475, 1 / 3
-"""Position b of the slip in columns with a dependent or slipping leading cell. Accuracy."""
+DEPENDENT_OFFSET, SLIPPING_OFFSET = 0.475, 1 / 3  # position b with a dependent or slipping leading cell. Accuracy.
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
 LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not loaded, more is another loaded cell. Accuracy.
 
