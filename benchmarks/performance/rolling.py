@@ -51,10 +51,10 @@ def steady_rolling(repeats: int, report: Report) -> Iterator[Row]:
                 counterbody=Counterbody(body),
                 settings=ContactSettings(tolerance=1e-5),
             )
-            works[name] = lambda solve_normal=solve_normal: solve_normal(LOAD * nudge())
+            works[name] = lambda solve_normal=solve_normal: solve_normal(load=LOAD * nudge())
             rolls = Rolling(longitudinal_creepage=8e-4)
             works[f"{name}, rolling"] = lambda solve_normal=solve_normal, rolls=rolls: solve_normal(
-                LOAD * nudge(), FRICTION, motion=rolls
+                load=LOAD * nudge(), friction=FRICTION, motion=rolls
             )
         seconds = medians(works, min(repeats, 3) if cells > 10_000 else repeats)
         durations = {name: seconds[f"{name}, rolling"] - seconds[name] for name in bodies}
