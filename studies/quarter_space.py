@@ -118,17 +118,10 @@ def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0
     shape = cs.Roller(radius=RADIUS, length=length * a, profile=cs.profiles.Cylinder(edge_radius * a))
     load = length * a * np.pi / 2 * a * PRESSURE
     # The stress is largest under the peak where the edge radius begins, which is narrow.
-    x, z = edge_radius + np.linspace(-0.2, 0.2, 33), np.linspace(0.0, 0.15, 16)
+    x, z = tuple(edge_radius + np.linspace(-0.2, 0.2, 33)), tuple(np.linspace(0.0, 0.15, 16))
+    reach = 0.5 * length * a
     return Indenter(
-        roller=shape,
-        material=material,
-        load=load,
-        half_width=a,
-        before=0.0,
-        reach=0.5 * length * a,
-        x=tuple(x),
-        z=tuple(z),
-        accuracy=accuracy,
+        roller=shape, material=material, load=load, half_width=a, before=0.0, reach=reach, x=x, z=z, accuracy=accuracy
     )
 
 
