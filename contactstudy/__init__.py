@@ -1,7 +1,7 @@
 """Rolling-sliding contact of a roller on an elastic body with free end faces.
 
-Names are imported when they are first used, so that ``import contactstudy`` stays fast. Which name comes from where
-stands in ``__init__.pyi``.
+Names are imported when they are first used, so that ``import contactstudy`` stays fast. The file
+``__init__.pyi`` lists the names and their modules.
 """
 
 from __future__ import annotations

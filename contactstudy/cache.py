@@ -18,7 +18,7 @@ from cachetools import LRUCache
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 
-LIMIT = 2**30  # Default bound of all cached values, bytes. Speed
+LIMIT = 2**30  # Default bound of all cached values, bytes. Speed.
 Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
@@ -117,12 +117,12 @@ def limit(nbytes: int) -> None:
     global _store
     bound = checks.count("nbytes", nbytes, minimum=0)
     with _lock:
-        smaller = _empty_store(bound)
+        bounded_store = _empty_store(bound)
         while _store:
             key, entry = _store.popitem()  # the least recently used first: the order is preserved
             if entry[1] <= bound:
-                smaller[key] = entry
-        _store = smaller
+                bounded_store[key] = entry
+        _store = bounded_store
 
 
 def recall(kind: str, key: Hashable) -> Any | None:
@@ -134,7 +134,7 @@ def recall(kind: str, key: Hashable) -> Any | None:
 
 
 def retain(kind: str, key: Hashable, value: Value, *, replace: bool = False) -> Value:
-    """Cache a value with read-only arrays; return the shared one: the first of its key, or this one to `replace` it."""
+    """Cache a value with read-only arrays; return the first cached value of the key, or with `replace` this one."""
     nbytes = _protect(value)
     with _lock:
         if replace:
@@ -162,7 +162,7 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
 
 
 def _protect(value: object) -> int:
-    """Make the arrays of a value read-only, and return its bytes, with those that its use adds."""
+    """Make the arrays of a value read-only; return its bytes, plus the `added_nbytes` of its later use."""
     nbytes, visited, pending = 0, set[int](), [value]
     while pending:
         item = pending.pop()

@@ -61,10 +61,10 @@ TEMPORARY_SUFFIX = ".part"  # Suffix of an unfinished file
 REAL_KINDS = "biufO"  # Kinds of arrays whose values can be real numbers: not complex numbers, dates or texts
 
 
-def store(checked: object, **values: object) -> None:
-    """Store checked values in the fields of a frozen dataclass, from its ``__post_init__``."""
+def store(target: object, **values: object) -> None:
+    """Store checked values in the fields of an instance of a frozen dataclass, from its ``__post_init__``."""
     for name, value in values.items():
-        object.__setattr__(checked, name, value)
+        object.__setattr__(target, name, value)
 
 
 MAX_MAGNITUDE = 1e50
@@ -129,12 +129,12 @@ def number(check: Callable[[str, object, str], float], unit: str = "") -> dict[s
     return {"check": check, "unit": unit}
 
 
-def store_numbers(checked: Any) -> None:
-    """Check the numbers in the fields of a frozen dataclass and store them as floats; None only as the default."""
-    for entry in fields(checked):
-        value, check = getattr(checked, entry.name), entry.metadata.get("check")
+def store_numbers(target: Any) -> None:
+    """Check the numbers in the fields of a dataclass and store them as floats; None passes only as the default."""
+    for entry in fields(target):
+        value, check = getattr(target, entry.name), entry.metadata.get("check")
         if check is not None and not (value is None and entry.default is None):
-            store(checked, **{entry.name: check(entry.name, value, entry.metadata["unit"])})
+            store(target, **{entry.name: check(entry.name, value, entry.metadata["unit"])})
 
 
 def count(name: str, value: object, minimum: int = 1) -> int:
@@ -160,8 +160,8 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
     close_matches = get_close_matches(value, names, n=1, cutoff=0.5)
     hint = f"did you mean {close_matches[0]!r}?" if close_matches else ""
     listed_names = names if len(names) <= 20 else get_close_matches(value, names, n=3, cutoff=0.0)
-    more = "" if listed_names is names else f", or one of {len(names) - 3} further names"
-    raise InvalidInputError(name, value, f"one of {', '.join(listed_names)}{more}", hint)
+    remainder_text = "" if listed_names is names else f", or one of {len(names) - 3} further names"
+    raise InvalidInputError(name, value, f"one of {', '.join(listed_names)}{remainder_text}", hint)
 
 
 @contextmanager
@@ -214,10 +214,11 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
         raise InvalidInputError(name, values, f"numbers ({unit})") from None
     if array.ndim != 1 or array.size == 0:
         raise InvalidInputError(name, values, f"a non-empty one-dimensional sequence ({unit})")
-    bad = np.flatnonzero(~(np.abs(array) <= MAX_MAGNITUDE))
-    if bad.size:
+    invalid_indices = np.flatnonzero(~(np.abs(array) <= MAX_MAGNITUDE))
+    if invalid_indices.size:
         allowed = f"finite everywhere, of a size up to {MAX_MAGNITUDE:g} ({unit})"
-        raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", allowed, "units are SI")
+        index = invalid_indices[0]
+        raise InvalidInputError(name, f"{array[index]} at position {index}", allowed, "units are SI")
     return array
 
 

@@ -1,7 +1,7 @@
 """Exceptions and warnings of the package.
 
-Every error that a user can cause derives from :class:`ContactStudyError`, so a script can tell a bad case from a
-programming mistake with one ``except`` clause.
+Every error that a user can cause derives from :class:`ContactStudyError`, so one ``except`` clause of a script
+separates a bad case from a programming error.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class InvalidInputError(ContactStudyError, ValueError):
     value : object
         The value that was given.
     allowed : str
-        What is allowed, as the end of the sentence "must be ...".
+        Allowed values, as the end of the sentence "must be ...".
     hint : str, optional
         Advice.
 
@@ -74,7 +74,7 @@ def _format_value(value: Any) -> str:
 
 
 class StudyFileError(ContactStudyError):
-    """A study file cannot be read, or nothing in the study can be solved."""
+    """A study file cannot be read, or no case of the study can be solved."""
 
 
 class StoreError(ContactStudyError):
@@ -104,7 +104,7 @@ class MagnitudeWarning(UserWarning):
 
 
 class TemperatureWarning(UserWarning):
-    """The temperature of a contact passes the limit that was given."""
+    """The temperature of a contact exceeds the given limit."""
 
 
 class BoundWarning(UserWarning):

@@ -45,8 +45,8 @@ class Overlapping:
         Depths of the equivalent loads on the faces, metres, not negative. The least depth and the distance of the
         first cell's centre from the end determine the largest wavenumbers.
     load : {"pressure", "traction_y", "traction_x"}
-        Direction of the load. Pressure and traction along y share their modes and faces; a traction along x, which
-        mirror images reverse, has others.
+        Direction of the load. Pressure and traction along y share their modes and faces; mirror images
+        reverse a traction along x, so its modes and faces differ.
 
     Raises
     ------
@@ -163,8 +163,8 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     Raises
     ------
     InvalidInputError
-        If a name is unknown, the grid does not fit the body, or the model is "single-mirror", whose ends keep some
-        shear and miss reciprocity.
+        If a name is unknown, the grid does not fit the body, or the model is "single-mirror", which violates
+        reciprocity because its ends keep some shear.
 
     Examples
     --------
@@ -178,26 +178,26 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     checks.instance("grid", grid, Grid, "a Grid")
-    if any(part.free_ends is not None and part.free_ends.mirrored_once for part in body.terms):
+    if any(term.free_ends is not None and term.free_ends.mirrored_once for term in body.terms):
         raise InvalidInputError("body.model", "single-mirror", "a model with reciprocity", "its ends keep some shear")
     direction = DIRECTIONS[checks.known_name("component", component, DIRECTIONS)]
-    loaded = LOADS[checks.known_name("load", load, LOADS)]
-    forward = surface_operator(body, grid, (loaded,), directions=(direction,))
-    backward = surface_operator(body, grid, (direction,), directions=(loaded,))
+    load_direction = LOADS[checks.known_name("load", load, LOADS)]
+    operator = surface_operator(body, grid, (load_direction,), directions=(direction,))
+    reciprocal_operator = surface_operator(body, grid, (direction,), directions=(load_direction,))
     # On columns the displacement is a mean: forces on the cells and means are conjugate.
     weights = grid.weights if grid.observes_means else np.ones((1, 1))
 
     def apply(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
             cell_loads = vector.reshape(grid.shape)
-            return np.array(forward.compute_displacements({loaded: cell_loads}, (direction,))[direction]).ravel()
+            displacements = operator.compute_displacements({load_direction: cell_loads}, (direction,))
+            return np.array(displacements[direction]).ravel()
 
     def apply_transposed(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
             cell_loads = vector.reshape(grid.shape) / weights
-            return (
-                weights * np.array(backward.compute_displacements({direction: cell_loads}, (loaded,))[loaded])
-            ).ravel()
+            displacements = reciprocal_operator.compute_displacements({direction: cell_loads}, (load_direction,))
+            return (weights * np.array(displacements[load_direction])).ravel()
 
     return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=apply, rmatvec=apply_transposed, dtype=np.float64)
 

@@ -1,4 +1,4 @@
-"""Height maps of rough surfaces: made by numbers, or read from a measurement, on a grid.
+"""Height maps of rough surfaces on a grid: random surfaces and measurements.
 
 A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out and closes the gap.
 """
@@ -18,7 +18,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
-COORDINATE_TOLERANCE = 1e-3  # Largest difference of positions that count as equal, over a cell. Accuracy
+COORDINATE_TOLERANCE = 1e-3  # Difference over a cell of positions that count as equal. Rounding.
 
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
@@ -86,8 +86,8 @@ def self_affine(
     larger_side = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
     if not shortest <= longest <= larger_side * (1 + 1e-12):
         raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {larger_side:g} m")
-    x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
-    frequency = np.hypot(x[:, None], y[None, :])
+    frequency_x, frequency_y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
+    frequency = np.hypot(frequency_x[:, None], frequency_y[None, :])
     is_rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
     if not is_rough.any():
         allowed = "wavelengths with at least one wave of the grid between them"
@@ -97,8 +97,8 @@ def self_affine(
     noise = np.random.default_rng(seed).standard_normal(grid.shape)
     heights = np.fft.irfft2(amplitude * np.fft.rfft2(noise), s=grid.shape)
     heights *= rms_height / np.sqrt(np.mean(heights**2))
-    values = f"rms_height={rms_height:g}, hurst={hurst:g}, longest={longest:g}, shortest={shortest:g}, seed={seed}"
-    return _height_map(grid, heights, f"contactstudy.roughness.self_affine({values})")
+    arguments = f"rms_height={rms_height:g}, hurst={hurst:g}, longest={longest:g}, shortest={shortest:g}, seed={seed}"
+    return _height_map(grid, heights, f"contactstudy.roughness.self_affine({arguments})")
 
 
 def read_height_map(
@@ -121,8 +121,8 @@ def read_height_map(
         x3p or a format of SurfaceTopography, with the extra `measured`. Coordinates are the grid's.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
-        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold fine waves
-        into long waves: filter the map before.
+        linearly along both axes. Cells wider than the steps of the measurement omit or alias short waves: filter
+        the map first.
     remove_slope : bool
         Whether the plane that fits the measured heights best is taken off.
     remove_form : bool
@@ -167,7 +167,7 @@ def read_height_map(
     check_values("height", heights, ("x", x), ("y", y))
     _check_cover(x, y, grid)
     if remove_slope or remove_form:
-        heights = heights - _form(x, y, heights, order=2 if remove_form else 1)
+        heights = heights - _fit_form(x, y, heights, order=2 if remove_form else 1)
     return _height_map(grid, _interpolate(x, y, heights, grid), f"measured, {path.name}")
 
 
@@ -214,8 +214,8 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
 def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, argument: str = "grid") -> None:
     """Raise unless the measured positions cover the cell centres."""
     for name, map_centres, centres in (("x", x, grid.x), ("y", y, grid.y)):
-        slack = 1e-9 * (map_centres[-1] - map_centres[0])
-        if centres[0] < map_centres[0] - slack or centres[-1] > map_centres[-1] + slack:
+        tolerance = 1e-9 * (map_centres[-1] - map_centres[0])
+        if centres[0] < map_centres[0] - tolerance or centres[-1] > map_centres[-1] + tolerance:
             allowed = f"within the measured {map_centres[0]:g} to {map_centres[-1]:g} m"
             raise InvalidInputError(f"{argument}.{name}", f"{centres[0]:g} to {centres[-1]:g} m", allowed)
 
@@ -228,9 +228,9 @@ def _interpolate(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) 
     return np.asarray(RegularGridInterpolator((x, y), heights)(clipped_positions))
 
 
-def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
-    """Polynomial of the least squares, with all terms up to an order."""
-    # Normal equations need no array per term, and with few terms over -1 to 1 lose at most two digits.
+def _fit_form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
+    """Polynomial of an order that fits the heights by least squares."""
+    # Normal equations need no array per term; for these few terms they lose at most two digits.
     along_x, along_y = (
         np.polynomial.legendre.legvander(np.interp(axis, axis[[0, -1]], [-1.0, 1.0]), order) for axis in (x, y)
     )
@@ -238,7 +238,7 @@ def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> Floa
     products_x, products_y = along_x.T @ along_x, along_y.T @ along_y
     matrix = np.array([[products_x[i, k] * products_y[j, m] for k, m in terms] for i, j in terms])
     moments = along_x.T @ heights @ along_y
-    factors = np.zeros((order + 1, order + 1))
+    coefficients = np.zeros((order + 1, order + 1))
     projections = np.array([moments[term] for term in terms])
-    factors[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, projections, rcond=None)[0]
-    return np.asarray(along_x @ factors @ along_y.T)
+    coefficients[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, projections, rcond=None)[0]
+    return np.asarray(along_x @ coefficients @ along_y.T)

@@ -16,7 +16,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
-from contactstudy.case.magnitudes import check_balanced, check_on_its_length, warn_of_magnitudes
+from contactstudy.case.magnitudes import check_balanced, check_contact_length, warn_of_magnitudes
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
@@ -48,10 +48,10 @@ __all__ = ["roller_stress", "solve"]
 class CaseContact:
     """Contact of a case."""
 
-    case: Case  # the case; a prescribed approach is replaced by the load
-    contact: Contact  # the contact
+    case: Case  # with the load in place of a prescribed approach
+    contact: Contact
     tractions: FrictionalContact | None = None  # tractions with stick and slip; None in full sliding
-    values: xr.Dataset = field(default_factory=xr.Dataset)  # values and errors of refined columns; empty on other cells
+    values: xr.Dataset = field(default_factory=xr.Dataset)  # of refined columns, with errors; empty on other cells
 
     def dataset(self) -> xr.Dataset:
         """Labelled contact with its values; `tilt` includes the tilt of the case."""
@@ -72,7 +72,7 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
     """Contact on columns that are refined to an accuracy."""
     find_contact = refine_contact if case.approach is None else contact_at_approach
     refined = find_contact(case, accuracy, tolerance)
-    loaded_case = _with_load(case, refined.contact)
+    loaded_case = _prescribe_load(case, refined.contact)
     contact, tractions, errors = _check_contact(case, refined.contact), None, xr.Dataset()
     load_error = {} if case.approach is None else {"normal_load_error": approach_load_error(loaded_case, refined)}
     if not isinstance(case.motion, Sliding):
@@ -80,7 +80,7 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
         tractions.warn_unless_converged()
         contact = tractions.contact
     values = refined_values(case, refined).assign(errors.data_vars).assign(load_error)
-    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions, values=values)
+    return CaseContact(case=_prescribe_load(case, contact), contact=contact, tractions=tractions, values=values)
 
 
 def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | None, tolerance: float) -> CaseContact:
@@ -89,7 +89,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
         loaded_case = case
         if case.approach is not None:
-            loaded_case = _with_load(case, contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).contact)
+            loaded_case = _prescribe_load(case, contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).contact)
         grid = choose_grid(loaded_case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():
@@ -115,10 +115,10 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         tractions = frictional_contact(contact.shape, contact.settings, request)
         tractions.warn_unless_converged()
         contact = tractions.contact
-    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions)
+    return CaseContact(case=_prescribe_load(case, contact), contact=contact, tractions=tractions)
 
 
-def _with_load(case: Case, contact: Contact) -> Case:
+def _prescribe_load(case: Case, contact: Contact) -> Case:
     """Case with a prescribed load in place of its approach."""
     return case if case.approach is None else replace(case, load=contact.carried_load, approach=None)
 
@@ -126,13 +126,13 @@ def _with_load(case: Case, contact: Contact) -> Case:
 def _check_contact(case: Case, contact: Contact) -> Contact:
     """Contact; raises if only the end of the roller touches, warns unless it converged."""
     shape = contact.shape
-    check_on_its_length(_with_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
+    check_contact_length(_prescribe_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
     contact.warn_unless_converged()
     return contact
 
 
-RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
-RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the residual's positions along y, over the half-width
+RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # of `end_traction_residual` over the half-width. Accuracy.
+RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the same along y. Accuracy.
 RESIDUAL_COMMENT = (
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
     f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end it is larger, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"
@@ -152,20 +152,20 @@ def with_stresses(
     columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
     depths = default_depths(scale, search.peak_width) if z is None else z
     positions = field_positions(case.body, grid, columns, y, depths)
-    on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
+    end_yz = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
     sections = EdgeSections.of(grid, loads, contact.contact.gap)
     slides_fully, is_singular = contact.tractions is None, np.isinf(float(result.get("peak_pressure", 0.0)))
     further_points = [sections.points] if sections.columns.size and slides_fully and not is_singular else []
-    stresses = contact_stresses(case.body, loads, search, positions, end_yz=on_ends, further_points=further_points)
+    stresses = contact_stresses(case.body, loads, search, positions, end_yz=end_yz, further_points=further_points)
     field = stresses.field
     if refined or x is not None or y is not None:
         field = field.rename({"x": "x_field", "y": "y_field"})
     result = result.assign_coords(field.coords).assign(field.data_vars)
-    numbers = label_largest_stress(result, *stresses.maximum).assign(end_traction_residual=stresses.end_residual)
-    numbers["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
+    extremes = label_largest_stress(result, *stresses.maximum).assign(end_traction_residual=stresses.end_residual)
+    extremes["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
     if stresses.further and Load.ALONG_Y in loads:
-        numbers = numbers.assign(label_largest_tension(result, sections, loads, *stresses.further).data_vars)
-    return result.assign(numbers.data_vars)
+        extremes = extremes.assign(label_largest_tension(result, sections, loads, *stresses.further).data_vars)
+    return result.assign(extremes.data_vars)
 
 
 LOGGER = logging.getLogger(__name__)
@@ -253,12 +253,12 @@ def solve(
     if accuracy is not None and (grid is not None or roughness is not None):
         reason = "a grid" if grid is not None else "roughness"
         raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")
-    refines = grid is None and roughness is None
+    refines_cells = grid is None and roughness is None
     tolerance = checks.positive("tolerance", tolerance)
-    cells = "refined" if refines else "chosen" if grid is None else "given"
-    settings: dict[str, object] = {"cells": cells, "tolerance": tolerance, "rough": roughness is not None}
+    cell_choice = "refined" if refines_cells else "chosen" if grid is None else "given"
+    settings: dict[str, object] = {"cells": cell_choice, "tolerance": tolerance, "rough": roughness is not None}
     start = time.perf_counter()
-    if refines:
+    if refines_cells:
         settings["accuracy"] = accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
         contact = refined_case_contact(case, accuracy, tolerance)
     else:

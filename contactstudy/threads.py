@@ -10,23 +10,23 @@ from threading import Lock
 from threadpoolctl import ThreadpoolController
 
 _LOCK, _LIMIT = Lock(), ExitStack()
-_entries = 0
-_controller = cache(ThreadpoolController)  # finds the loaded libraries, which takes a millisecond, once
+_entry_count = 0
+_controller = cache(ThreadpoolController)  # the search for the loaded libraries takes a millisecond
 
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
     """Keep BLAS on one thread: for many small products, waiting for a second thread costs more than it saves."""
     # All threads of the process share the limit: the first entry sets it, the last exit restores the threads.
-    global _entries
+    global _entry_count
     with _LOCK:
-        if not _entries:
+        if not _entry_count:
             _LIMIT.enter_context(_controller().limit(limits=1, user_api="blas"))
-        _entries += 1
+        _entry_count += 1
     try:
         yield
     finally:
         with _LOCK:
-            _entries -= 1
-            if not _entries:
+            _entry_count -= 1
+            if not _entry_count:
                 _LIMIT.close()

@@ -17,17 +17,18 @@ UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {  # by SI unit: least 
     "s": ((0.0, 1.0, "s"),),
 }
 
-ROUNDING = 1e-6  # relative rounding of a size that is compared with the least size of a unit
-NEGLIGIBLE = 1e-6  # fraction of a value below which an error counts as rounding
-DIGITS, ERROR_DIGITS = 4, 2  # digits of a number whose error is not known, and of an error
+ROUNDING = 1e-6  # Relative rounding of a size that is compared with the least size of a unit. Rounding.
+NEGLIGIBLE = 1e-6  # Error over the value below which the text omits it. Rounding.
+DIGITS, ERROR_DIGITS = 4, 2  # Digits of a number without an error, and of an error. Accuracy.
 
 
 def unit_for(size: float, units: str) -> tuple[float, str]:
     """Return the size in SI, and the name, of the unit that suits a size."""
     if units in ("", "1"):
         return 1.0, ""
-    steps = UNITS.get(units, ((0.0, 1.0, units),))
-    factor, name = next((step[1:] for step in steps if abs(size) * (1 + ROUNDING) >= step[0]), steps[-1][1:])
+    candidates = UNITS.get(units, ((0.0, 1.0, units),))
+    rounded_up = abs(size) * (1 + ROUNDING)
+    factor, name = next((entry[1:] for entry in candidates if rounded_up >= entry[0]), candidates[-1][1:])
     return factor, name
 
 

@@ -11,12 +11,12 @@ from contactstudy import checks
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above single precision. Accuracy
-MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy
-WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
-EDGE_ROUNDING = 1e-12  # rounding of the edges over the grid's length, and least width of a cell. Accuracy.
-TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
-MAX_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
+SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above single precision. Rounding.
+MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy.
+WIDTH_RATIO = 3.0  # Ratio of neighbouring widths outside the contact. Speed.
+EDGE_ROUNDING = 1e-12  # Rounding of the edges, and least width of a cell, over the grid's length. Rounding.
+TOP_ERROR = 0.02  # Relative error of stresses on the top under a pressure of cells, docs/explanation/limits. Accuracy.
+MAX_CELLS = 10**8  # Largest number of cells; more suggest a wrong unit. Limit.
 
 
 class Points(NamedTuple):
@@ -54,7 +54,7 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
-    _inner: tuple[float, ...] = field(default=(), repr=False)  # edges between cells of different widths
+    _inner_edges: tuple[float, ...] = field(default=(), repr=False)  # between cells of different widths
 
     def __post_init__(self) -> None:
         for name in ("x_range", "y_range"):
@@ -112,13 +112,13 @@ class Grid:
         x_range = (float(edges[0]), float(edges[-1]))
         uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
         inner_edges = () if uniform else tuple(edges[1:-1].tolist())
-        return cls(x_range=x_range, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner=inner_edges)
+        return cls(x_range=x_range, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner_edges=inner_edges)
 
     def check_growth(self, cells: BoolArray) -> None:
         """Raise if the widths of neighbours among the given columns differ by more than error estimates allow."""
         edges, widths = self.x_edges, self.widths
         ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
-        # An edge may be rounded.
+        # The tolerance allows for rounded edges.
         steep_indices = np.flatnonzero((ratio > MAX_WIDTH_RATIO * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
         if steep_indices.size:
             index = int(steep_indices[0]) + 1
@@ -139,7 +139,7 @@ class Grid:
     @property
     def uniform(self) -> bool:
         """Whether all cells have the same width."""
-        return not self._inner
+        return not self._inner_edges
 
     @property
     def is_symmetric(self) -> bool:
@@ -180,7 +180,7 @@ class Grid:
         """Edges of the cells along x, metres."""
         if self.uniform:
             return np.linspace(*self.x_range, self.cells_x + 1)
-        return np.array([self.x_range[0], *self._inner, self.x_range[1]])
+        return np.array([self.x_range[0], *self._inner_edges, self.x_range[1]])
 
     @property
     def widths(self) -> FloatArray:
@@ -206,16 +206,16 @@ class Grid:
         return np.asarray(mid_y + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
 
     def coarsened(self) -> Grid:
-        """Return the grid of cells of twice the size; of slightly larger cells where their number is odd."""
+        """Return a grid with cells of twice the size, slightly larger if the number of cells is odd."""
         if self.uniform:
             return replace(self, cells_x=self.cells_x // 2, cells_y=self.cells_y // 2)
-        # The growth of paired cells may exceed the limit, since they serve only a first guess.
-        inner_edges = self._inner[1::2]
-        return replace(self, cells_x=len(inner_edges) + 1, cells_y=self.cells_y // 2, _inner=inner_edges)
+        # Merged cells may exceed the limit of growth: they serve only an initial guess.
+        inner_edges = self._inner_edges[1::2]
+        return replace(self, cells_x=len(inner_edges) + 1, cells_y=self.cells_y // 2, _inner_edges=inner_edges)
 
 
 def growing_edges(distance: float, width: float, growth: float = WIDTH_RATIO) -> FloatArray:
-    """Edges after 0 of few cells up to `distance`, with growing widths from about `width`; one cell if infinite."""
+    """Edges above 0 of a few cells up to `distance`, that widen from about `width`; one cell if it is infinite."""
     if np.isinf(distance):
         return np.array([width])
     if distance <= 1e-9 * width:
@@ -249,7 +249,7 @@ def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) 
     """Values (x, ...) at other positions along x, linear between the centres and constant beyond the outermost ones."""
     if centres.size == 1:
         return np.repeat(values, x.size, axis=0)
-    right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
-    fraction = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)
+    upper = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
+    fraction = np.clip((x - centres[upper - 1]) / (centres[upper] - centres[upper - 1]), 0.0, 1.0)
     fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
-    return np.asarray((1 - fraction) * values[right - 1] + fraction * values[right])
+    return np.asarray((1 - fraction) * values[upper - 1] + fraction * values[upper])

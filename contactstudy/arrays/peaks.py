@@ -8,8 +8,8 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 
-FLANK = 0.8  # fraction of a peak at which the width is measured; at the base a half-ellipse is 1 / 0.6 times as wide
-SAMPLE_COUNT = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
+FLANK = 0.8  # Height over a peak's where its width is measured: 0.6 of the base of a half-ellipse. Accuracy.
+SAMPLE_COUNT = 17  # Points of the interpolating polynomial between the two neighbours of a sample. Accuracy.
 
 
 def section_maxima(pressure: FloatArray) -> FloatArray:
@@ -30,8 +30,8 @@ def lagrange_weights(nodes: FloatArray, points: FloatArray) -> FloatArray:
     """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial."""
     matrix = np.empty((points.size, nodes.size))
     for i, node in enumerate(nodes):
-        poles = np.delete(nodes, i)
-        matrix[:, i] = np.prod((points[:, None] - poles) / (node - poles), axis=1)
+        other_nodes = np.delete(nodes, i)
+        matrix[:, i] = np.prod((points[:, None] - other_nodes) / (node - other_nodes), axis=1)
     return matrix
 
 
@@ -40,18 +40,18 @@ def interpolate_about(
 ) -> tuple[list[FloatArray], FloatArray]:
     """Points about a sample along each axis, and their values (component, *axes, ...), by `neighbours` on each side."""
     points, matrices = [], []
-    for axis_count, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
-        # At an edge the polynomial takes all its samples from one side.
+    for dimension, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
+        # At an edge the polynomial uses samples on one side only.
         count = min(2 * neighbours + 1, axis.size)
         start = min(max(centre - neighbours, 0), axis.size - count)
         nodes = axis[start : start + count]
         low, high = axis[max(centre - 1, 0)], axis[min(centre + 1, axis.size - 1)]
         samples = np.unique(np.append(np.linspace(low, high, SAMPLE_COUNT), axis[centre])) if count > 1 else nodes
-        values = values[(slice(None),) * axis_count + (slice(start, start + count),)]
+        values = values[(slice(None),) * dimension + (slice(start, start + count),)]
         points.append(samples)
         matrices.append(lagrange_weights(nodes, samples))
-    for axis_count, matrix in enumerate(matrices, start=1):
-        values = np.moveaxis(np.tensordot(matrix, values, axes=(1, axis_count)), 0, axis_count)
+    for dimension, matrix in enumerate(matrices, start=1):
+        values = np.moveaxis(np.tensordot(matrix, values, axes=(1, dimension)), 0, dimension)
     return points, values
 
 
@@ -65,8 +65,8 @@ def variation_lengths(
     is_different = axial < FLANK * axial[column]
     if rising:
         is_different |= FLANK * axial > axial[column]
-    loaded = column if axial[column] > 0 else int(axial.argmax())
-    length_y = 0.5 * dy * np.count_nonzero(pressure[loaded] > 0)
+    loaded_column = column if axial[column] > 0 else int(axial.argmax())
+    length_y = 0.5 * dy * np.count_nonzero(pressure[loaded_column] > 0)
     length_x = np.abs(x[is_different] - x[column]).min() if is_different.any() else np.inf
     if axial[column] > 0:
         length_x /= np.sqrt(1 - FLANK**2)

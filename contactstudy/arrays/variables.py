@@ -22,11 +22,11 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.versions import version_of
 
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
-ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
-ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"  # whether ``<name>_error`` has the error
+ERROR_KIND = "error_kind"  # attribute of a variable: ESTIMATED or NOT_ESTIMATED
+ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"  # the error is in ``<name>_error``, or not known
 UNKNOWN_ERROR = f"error {NOT_ESTIMATED}"  # remark on a number in tables and figures
 
-_AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
+_AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda affixes: -len("".join(affixes)))
 """Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""
 
 
@@ -38,21 +38,21 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
     for prefix, suffix in _AFFIXES:
         base_name = name.removeprefix(prefix).removesuffix(suffix)
         if name == f"{prefix}{base_name}{suffix}" and base_name:
-            of = base or specification(base_name) or specification(base_name, coordinate=True)
-            return of and _fill_templates(RULES[f"{prefix}{{name}}{suffix}"], of)
+            original = base or specification(base_name) or specification(base_name, coordinate=True)
+            return original and _fill_templates(RULES[f"{prefix}{{name}}{suffix}"], original)
     return None
 
 
 def _fill_templates(row: Variable, base: Variable) -> Variable:
     """Row of the table whose names in braces are replaced by the texts of `base`."""
-    fields = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
+    texts = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
     dims = base.dims if row.dims == ("{name}",) else row.dims
     symbol = row.symbol
     if "{symbol}" in symbol:
-        symbol = symbol.format(**fields) if base.symbol else ""
-    long_name = row.long_name.format(**fields)
-    fields["variable"] = ", ".join(filter(None, (base.long_name, base.comment)))
-    return Variable(dims, row.units.format(**fields), symbol, long_name, row.comment.format(**fields))
+        symbol = symbol.format(**texts) if base.symbol else ""
+    long_name = row.long_name.format(**texts)
+    texts["variable"] = ", ".join(filter(None, (base.long_name, base.comment)))
+    return Variable(dims, row.units.format(**texts), symbol, long_name, row.comment.format(**texts))
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:
@@ -150,7 +150,7 @@ def require_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", n
     units = {name: VARIABLES[name].units for name in names}
     for name, unit in (units | {axis: "m" for axis in POSITIONS if axis in dataset.coords}).items():
         stated_unit = dataset[name].attrs.get("units", unit)
-        if not unit or stated_unit == unit:  # without unit: depends on another variable
+        if not unit or stated_unit == unit:  # an empty unit depends on another variable
             continue
         if stated_unit == "1":
             if name in names and not normalized:
@@ -205,7 +205,7 @@ def selection_of(texts: Iterable[str]) -> dict[str, str]:
 def labelled_cells(
     name: str, array: xr.DataArray, *, extent: tuple[float, float] = (-np.inf, np.inf), infinite: bool = False
 ) -> tuple[FloatArray, Grid]:
-    """Values (x, y) and grid of a DataArray on cell centres; `x_width`, or else the body's end, gives the edges."""
+    """Values (x, y) and grid of a DataArray on cell centres; edges follow from `x_width` or from the body's end."""
     # A DataArray without the dimension `bounds` cannot contain `x_bounds`.
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     if set(array.dims) != {"x", "y"}:
@@ -214,7 +214,7 @@ def labelled_cells(
         if axis not in array.coords:
             raise InvalidInputError(f"{name}.coords", list(array.coords), f"with {axis} (cell centres, metres)")
     y_range, cells_y = uniform_range("y", array["y"].values)
-    grid = _grid(array, extent, y_range, cells_y)
+    grid = _find_grid(array, extent, y_range, cells_y)
     try:
         if array.dtype.kind not in REAL_KINDS:
             raise TypeError
@@ -243,16 +243,16 @@ def cell_coordinates(grid: Grid) -> dict[str, tuple[tuple[str, ...], FloatArray]
     return {"x_bounds": (("x", "bounds"), np.stack([edges[:-1], edges[1:]], axis=1)), "x_width": (("x",), grid.widths)}
 
 
-def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float, float], cells_y: int) -> Grid:
-    """Grid of an array whose cells along y are known."""
+def _find_grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float, float], cells_y: int) -> Grid:
+    """Grid of an array, from its positions along x and the known cells along y."""
     if "x_width" in array.coords:
         widths = checks.coordinates("x_width", array["x_width"].values)
         centres = checks.coordinates("x", array["x"].values)
         lower_edges, upper_edges = centres - 0.5 * widths, centres + 0.5 * widths
-        gap_widths = np.abs(upper_edges[:-1] - lower_edges[1:])
-        gap_indices = np.flatnonzero(gap_widths > SPACING_TOLERANCE * (upper_edges - lower_edges)[:-1])
-        if gap_indices.size:
-            index = int(gap_indices[0])
+        mismatches = np.abs(upper_edges[:-1] - lower_edges[1:])
+        mismatch_indices = np.flatnonzero(mismatches > SPACING_TOLERANCE * (upper_edges - lower_edges)[:-1])
+        if mismatch_indices.size:
+            index = int(mismatch_indices[0])
             borders = f"one cell ends at {upper_edges[index]:g} m, the next begins at {lower_edges[index + 1]:g} m"
             raise InvalidInputError("x_width", borders, "such that cells meet")
         edges = np.concatenate([lower_edges[:1], 0.5 * (upper_edges[:-1] + lower_edges[1:]), upper_edges[-1:]])
@@ -266,15 +266,15 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
         # The cells follow each other from the body's end.
-        positions = [extent[0]]
+        edges_from_end = [extent[0]]
         for centre in centres:
-            positions.append(2 * centre - positions[-1])
-            if not positions[-2] < centre:
+            edges_from_end.append(2 * centre - edges_from_end[-1])
+            if not edges_from_end[-2] < centre:
                 raise InvalidInputError(
                     "x",
                     f"a cell centre at {centre:g} m",
                     "the middle of a cell that follows the others from the body's end",
                     "add a coordinate x_width (x) for cells of different widths",
                 ) from None
-        return Grid.between(positions, y_range, cells_y)
+        return Grid.between(edges_from_end, y_range, cells_y)
     return Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y)

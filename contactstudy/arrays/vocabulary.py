@@ -15,8 +15,8 @@ class Variable(NamedTuple):
     units: str  # SI, in the spelling of the CF conventions
     symbol: str  # LaTeX, without dollar signs
     long_name: str
-    """Meaning. ``{variable}`` is replaced by the meaning of the variable that a quantity was derived from, and
-    ``{symbol}`` by that variable's symbol, or meaning without a symbol. Meanings of coordinates are short: in figures
+    """Meaning. In a derived quantity ``{variable}`` stands for the meaning of the original variable, and ``{symbol}``
+    for its symbol, or its meaning without a symbol. Meanings of coordinates are short: in figures
     xarray breaks the label of an axis after 30 characters, and the second line is cut off."""
     comment: str = ""  # addition to the short meaning
 
@@ -33,7 +33,7 @@ LAW, DISTANCE_X_DIMS = ("approach", "tilt"), ("distance", "x")
 EVALUATION_DIMS, PARAMETER_DIMS, SLIDE_ROLL_DIMS = ("evaluation",), ("parameter",), ("slide_roll_ratio",)
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")  # the order in every array
-COORDINATES = {  # coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`
+COORDINATES = {  # coordinates of results; for swept parameters see :data:`contactstudy.study.parameters.PARAMETERS`
     "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
     "y": Variable(("y",), "m", "y", "position along rolling", "from under the roller's centre"),
     "z": Variable(("z",), "m", "z", "depth", "below the loaded surface"),
@@ -71,7 +71,7 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "pass_number": Variable(("pass_number",), "1", "N", "number of the pass"),
 }
 
-VARIABLES = {  # every one by subject, without names made by a rule
+VARIABLES = {  # all variables by subject, except the names of `RULES`
     # The contact: of a case, of a shape with a body, and of a rough surface
     "pressure": Variable(XY, "Pa", "p", "contact pressure"),
     "traction_x": Variable(XY, "Pa", "q_x", "traction on the body along the roller's axis"),
@@ -137,11 +137,11 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "end_exponent_first": Variable(SCALAR, "1", r"m_\mathrm{I}", "exponent at a singular end nearer to end I"),
     "end_exponent_last": Variable(SCALAR, "1", r"m_\mathrm{II}", "exponent at a singular end nearer to end II"),
     "half_width_middle": Variable(SCALAR, "m", r"b_\mathrm{m}", "half-width of the contact at mid-length"),
-    # Of the slice model only
+    # The slice model
     "load_per_length": Variable(X, "N/m", "w", "load per length of each slice"),
     "deflection": Variable(X, "m", "d_k", "deflection of each slice"),
     "edge_factor": Variable(X, "1", "", "stress riser of ISO/TS 16281, a factor on the load"),
-    # Fields in the body, and the loads on the auxiliary bodies that make them
+    # Fields in the body, and the equivalent loads on the auxiliary bodies
     "u_x": Variable(XYZ, "m", "u_x", "displacement along the roller's axis"),
     "u_y": Variable(XYZ, "m", "u_y", "displacement along rolling"),
     "u_z": Variable(XYZ, "m", "u_z", "displacement along depth"),
@@ -353,7 +353,7 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "passed": Variable(CHECK_DIMS, "", "", "whether the difference is within the tolerance"),
 }
 
-RULES = {  # names made from other variables or coordinates; their unit, symbol and meaning fill the braces
+RULES = {  # names derived from another variable or coordinate, whose unit, symbol and meaning fill the braces
     "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),
     "largest_{name}": Variable(SCALAR, "{units}", "", "largest sample of the {variable}"),
     **{

@@ -12,12 +12,12 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
-ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s
-DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
-BARUS_PRESSURE = 0.5e9  # Pressure to which Barus' law holds, Pa. Physics
-MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid. Physics
-KELVIN = 273.15  # 0 degrees Celsius in kelvin
+ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa. Physics.
+ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s. Physics.
+DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1. Physics.
+BARUS_PRESSURE = 0.5e9  # Pressure to which Barus' law holds, Pa. Physics.
+MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid. Physics.
+KELVIN = 273.15  # 0 degrees Celsius in kelvin. Physics.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,13 +200,13 @@ class Lubricant:
         lowest, highest = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
         if not lowest <= theta <= highest:
             raise InvalidInputError("temperature", theta, f"from {lowest:g} to {highest:g} degrees Celsius", SOURCE)
-        temperatures, logs = np.array(OIL_TEMPERATURES), np.log(viscosities)
+        temperatures, log_viscosities = np.array(OIL_TEMPERATURES), np.log(viscosities)
         # ln eta = A + B / (theta - C), through three points.
-        ratio = (logs[0] - logs[1]) / (logs[1] - logs[2])
+        ratio = (log_viscosities[0] - log_viscosities[1]) / (log_viscosities[1] - log_viscosities[2])
         ratio *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
         c = (ratio * temperatures[0] - temperatures[2]) / (ratio - 1)
-        b = (logs[0] - logs[1]) / (1 / (temperatures[0] - c) - 1 / (temperatures[1] - c))
-        log_viscosity = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
+        b = (log_viscosities[0] - log_viscosities[1]) / (1 / (temperatures[0] - c) - 1 / (temperatures[1] - c))
+        log_viscosity = log_viscosities[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
         return cls(
             viscosity=float(np.exp(log_viscosity)),
             pressure_viscosity=1e-9 * float(np.interp(theta, temperatures, pressure_viscosities)),
@@ -233,9 +233,9 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
     log_temperatures = [np.log10(celsius + KELVIN) for celsius in (lower_temperature, upper_temperature)]
     b = (double_logarithms[0] - double_logarithms[1]) / (log_temperatures[1] - log_temperatures[0])
     kelvin = temperature + KELVIN
-    power = 10 ** (double_logarithms[0] + b * log_temperatures[0] - b * np.log10(kelvin))
-    viscosity = 10**power - 0.7
-    return float(viscosity), float((viscosity + 0.7) / viscosity * power * np.log(10) * b / kelvin)
+    logarithm = 10 ** (double_logarithms[0] + b * log_temperatures[0] - b * np.log10(kelvin))
+    viscosity = 10**logarithm - 0.7
+    return float(viscosity), float((viscosity + 0.7) / viscosity * logarithm * np.log(10) * b / kelvin)
 
 
 OIL_TEMPERATURES = (30.0, 60.0, 100.0)  # Temperatures of `OILS`, degrees Celsius

@@ -58,13 +58,14 @@ class Material:
         return self.young / (1 - self.poisson**2)
 
 
-def contact_modulus(first: Material, second: Material | None = None) -> float:
-    """Contact modulus ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, Pa; the second body is rigid if None."""
-    modulus = first.plane_strain_modulus
-    return modulus if second is None else 1 / (1 / modulus + 1 / second.plane_strain_modulus)
+def contact_modulus(material: Material, counter_material: Material | None = None) -> float:
+    """Contact modulus ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, Pa; a counterbody of None is rigid."""
+    modulus = material.plane_strain_modulus
+    return modulus if counter_material is None else 1 / (1 / modulus + 1 / counter_material.plane_strain_modulus)
 
 
-def dundurs_parameter(first: Material, second: Material | None = None) -> float:
-    """Return Dundurs' ``beta`` of two bodies, of which the second is rigid if None."""
-    strains = [(1 + body.poisson) * (1 - 2 * body.poisson) / body.young for body in (first, second) if body]
-    return 0.5 * (strains[0] - sum(strains[1:])) * contact_modulus(first, second)
+def dundurs_parameter(material: Material, counter_material: Material | None = None) -> float:
+    """Return Dundurs' ``beta`` of a body and its counterbody, which is rigid if None."""
+    materials = (material, counter_material)
+    compliances = [(1 + entry.poisson) * (1 - 2 * entry.poisson) / entry.young for entry in materials if entry]
+    return 0.5 * (compliances[0] - sum(compliances[1:])) * contact_modulus(material, counter_material)

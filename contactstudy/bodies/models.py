@@ -36,7 +36,7 @@ class BodyTerm(NamedTuple):
     free_ends: FreeEnds | None = None
 
 
-# Maximum ratio of a cell's sides, and of the window's width to the body's length: larger ratios suggest a wrong unit
+# Maximum ratio of a cell's sides, and of the window's width to the body's length; more suggest a wrong unit. Limit.
 MAX_CELL_RATIO, MAX_WINDOW_RATIO = 1e6, 1e4
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
@@ -86,7 +86,7 @@ class Body:
         """Raise unless a grid covers the body's x from its end, or from end to end, and is in proportion."""
         low, high = self.extent
         start, stop = grid.x_range
-        # Rounding between the grid's edge and the body's end
+        # The tolerance allows for rounding of the grid's edge and the body's end.
         tolerance = 1e-3 * grid.dx
         if np.isfinite(low) and abs(start - low) > tolerance:
             raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
@@ -140,7 +140,7 @@ class BodyWithFreeEnds(Body):
             return (BodyTerm(factor, self.extent), BodyTerm(1 - factor, WHOLE_LINE))
         low, high = self.extent
         if self.model == "single-mirror":
-            # A load and one image in either end: a pair per end, less the load in both pairs.
+            # The load and one image per end: two pairs of load and image, less the load that is in both pairs.
             free_ends = FreeEnds(high, mirrored_once=True)
             return (BodyTerm(1.0, (low, np.inf), free_ends), BodyTerm(1.0, (-np.inf, high)), BodyTerm(-1.0, WHOLE_LINE))
         return (BodyTerm(1.0, self.extent, FreeEnds(high) if self.model == "exact" else None),)
@@ -149,7 +149,7 @@ class BodyWithFreeEnds(Body):
 def guilbault_factor(poisson: float) -> float:
     """Guilbault's factor on mirrored loads, ``1.29 - (0.08 - 0.5 nu) / (1 - nu)`` (J. Tribology 133 (2011) 031402).
 
-    Quoted second-hand: compare with the exact ends before relying on it.
+    The factor is quoted from a secondary source: compare with the exact ends.
     """
     return 1.29 - (0.08 - 0.5 * poisson) / (1 - poisson)
 
@@ -219,7 +219,7 @@ class FiniteLengthSpace(BodyWithFreeEnds):
         return (0.0, self.length)
 
 
-ALIGNMENT_TOLERANCE = 1e-6  # Maximum distance, over a cell, between an end of the counterbody and an edge of cells
+ALIGNMENT_TOLERANCE = 1e-6  # Distance over a cell's width at which an edge is at the counterbody's end. Rounding.
 
 
 @dataclass(frozen=True)
@@ -244,7 +244,7 @@ class Counterbody:
     def grid_on_body(self, grid: Grid) -> Grid:
         """Return cells in the counterbody's coordinate, over its whole length if it has ends.
 
-        On uniform cells they are about as large as the cells of `grid`; else they equal the cells of `grid`, with
+        For a uniform `grid` these cells are about as large as its cells; else they equal the cells of `grid`, with
         edges at the ends of both bodies, and a few further cells on overhanging ends.
         """
         if not isinstance(self.body, FiniteLengthSpace):
@@ -260,18 +260,18 @@ class Counterbody:
             if edges[0] < end < edges[-1] and np.abs(edges - end).min() > tolerance:
                 allowed = "cells that meet the ends of both bodies where their widths differ"
                 raise InvalidInputError("grid", f"cells without a border at x = {self.start + end:g} m", allowed)
-        inner, widths = edges[(edges > tolerance) & (edges < stop - tolerance)], grid.widths
-        before = -growing_edges(edges[0], widths[0])[::-1] + edges[0] if edges[0] > tolerance else np.zeros(1)
-        after = growing_edges(stop - edges[-1], widths[-1]) + edges[-1] if stop - edges[-1] > tolerance else [stop]
-        body_edges = np.concatenate([before, inner, after])
+        inner_edges, widths = edges[(edges > tolerance) & (edges < stop - tolerance)], grid.widths
+        low_edges = -growing_edges(edges[0], widths[0])[::-1] + edges[0] if edges[0] > tolerance else np.zeros(1)
+        high_edges = growing_edges(stop - edges[-1], widths[-1]) + edges[-1] if stop - edges[-1] > tolerance else [stop]
+        body_edges = np.concatenate([low_edges, inner_edges, high_edges])
         body_edges[0], body_edges[-1] = 0.0, stop
         return Grid.between(body_edges, grid.y_range, grid.cells_y)
 
     def overlap(self, grid: Grid) -> FloatArray:
-        """Return the overlap of the counterbody's cells and the cells of `grid`, metres: array (its cell, cell).
+        """Return the overlaps (cell of the counterbody, cell of `grid`), metres.
 
-        A uniform cell with its centre on the counterbody overlaps entirely; its last cell includes the length
-        beyond the counterbody's end, which preserves the load.
+        A uniform cell with its centre on the counterbody overlaps entirely; the counterbody's last cells include
+        the overhang of such cells, which preserves the load.
         """
         body_edges, edges = self.start + self.grid_on_body(grid).x_edges, grid.x_edges
         tolerance = ALIGNMENT_TOLERANCE * grid.widths.min()
@@ -279,9 +279,9 @@ class Counterbody:
         body_edges[0], body_edges[-1] = min(body_edges[0], edges[0]), max(body_edges[-1], edges[-1])
         low = np.maximum(body_edges[:-1, None], edges[None, :-1])
         high = np.minimum(body_edges[1:, None], edges[None, 1:])
-        lengths = np.maximum(high - low, 0.0)
-        lengths[lengths < tolerance] = 0.0
-        return np.asarray(lengths * is_inside)
+        overlaps = np.maximum(high - low, 0.0)
+        overlaps[overlaps < tolerance] = 0.0
+        return np.asarray(overlaps * is_inside)
 
     def transfer_load(self, grid: Grid, load: FloatArray) -> FloatArray:
         """Transfer a load on the cells of `grid` to the counterbody's cells, with the same resultant."""

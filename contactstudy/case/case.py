@@ -29,14 +29,14 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import SlopeJumps, as_shape, find_slope_jumps
 from contactstudy.profiles.geometric import Chamfer, Cylinder
 
-GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
-MAX_TILT = 0.1  # Largest tilt of the linear theory, radians
-INCLINATION_POINT_COUNT = 41  # Points along the axis that determine the mean inclination of the roller
-# Range of the Hertz half-width over the roller's radius; the minimum is 10 kPa on steel
+GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy.
+MAX_TILT = 0.1  # Largest tilt of the linear theory, radians. Limit.
+INCLINATION_POINT_COUNT = 41  # Points along the axis for the mean inclination of the roller. Accuracy.
+# Range of the Hertz half-width over the roller's radius; the minimum corresponds to 10 kPa on steel. Limit.
 MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-7, 0.5
-MIN_DEPTH = 1e-12  # Minimum depth beyond first touch over the roller's radius: rounding
-TOUCH_POINTS = 2001  # Points along the axis in the search of first touch
-MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 1e-4, 1e7  # Range of the lengths of contact and body over the Hertz half-width
+MIN_DEPTH = 1e-12  # Minimum depth beyond first touch over the roller's radius. Rounding.
+TOUCH_POINTS = 2001  # Points along the axis in the search for first touch. Accuracy.
+MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 1e-4, 1e7  # Range of contact and body length over the half-width. Limit.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -337,8 +337,8 @@ class Case:
         points = x[:, None] + 0.5 * grid.widths[:, None] * nodes
         axial = self._clearance(points.ravel(), middle_line).reshape(points.shape)
         is_finite = np.isfinite(axial)
-        fractions = np.maximum(is_finite @ weights, weights.min())
-        mean = np.where(is_finite, axial, 0.0) @ weights / fractions
+        finite_weights = np.maximum(is_finite @ weights, weights.min())
+        mean = np.where(is_finite, axial, 0.0) @ weights / finite_weights
         at_centre = self._clearance(x, middle_line)[:, 0]
         correction = np.subtract(mean, at_centre, out=np.zeros_like(mean), where=np.isfinite(at_centre))
         return np.asarray(self._clearance(x, grid.y) + correction[:, None])
@@ -352,13 +352,13 @@ class Case:
         high = high if np.isfinite(high) else 3 * (self.roller_start + self.roller.length)
         return 0.5 * (low + high), high - low
 
-    def _clearance(self, from_middle: FloatArray, y: FloatArray) -> FloatArray:
-        """Height of the roller at distances from its mid-length."""
-        clearance = self.roller.clearance(from_middle, y)
+    def _clearance(self, axial_distance: FloatArray, y: FloatArray) -> FloatArray:
+        """Height (x, y) of the roller over the body's top at distances from the roller's mid-length."""
+        clearance = self.roller.clearance(axial_distance, y)
         midpoint, length = self._body_top
-        x = np.clip(self.roller_middle + from_middle - midpoint, -0.5 * length, 0.5 * length)
+        x = np.clip(self.roller_middle + axial_distance - midpoint, -0.5 * length, 0.5 * length)
         clearance = clearance + self.body_edge.drop(x, length)[:, None]
-        return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
+        return clearance - self.tilt * axial_distance[:, None] if self.tilt else clearance
 
 
 def small_tilt(value: object) -> float:

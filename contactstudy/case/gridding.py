@@ -1,4 +1,4 @@
-"""Settings of the solution of a case, without the solver: plans of studies use them."""
+"""Accuracy and cells of the solution of a case; plans of studies use them without the solver."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError, WindowError
 
-ACCURACY, TOLERANCE = 0.01, 1e-6  # Default error of the contact over the peak, and default tolerance of its iteration
-ACCURACY_RANGE = (1e-3, 0.1)  # Range of the accuracy
+ACCURACY, TOLERANCE = 0.01, 1e-6  # Defaults: error over the peak, tolerance of the iteration. Accuracy.
+ACCURACY_RANGE = (1e-3, 0.1)  # Range of the accuracy that the refinement can reach. Limit.
 
 
 def check_accuracy(value: object) -> float:
@@ -34,7 +34,7 @@ WINDOWS = (2.0, 3.0, 5.0, 8.0, *(12.0 * 1.5 ** np.arange(10)).tolist())
 :func:`choose_grid`. A short or tilted contact is wider than the line contact of the same load; a ridge that carries the
 load of the longest roller, of 1e7 half-widths, is 300 wide."""
 
-MAX_CELL_INCREASE = 1.25  # Maximum ratio of the cells to the requested cells. Accuracy of an elastic roller's ends
+MAX_CELL_INCREASE = 1.25  # Maximum cells over requested cells, for edges at an elastic roller's ends. Accuracy.
 
 
 def graded_grid(case: Case, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
@@ -114,10 +114,10 @@ def create_widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16
 
 def solve_in_first_window(windows: Iterable[Window], solve: Callable[[Window], Result]) -> Result:
     """Return ``solve(window)`` of the first window or grid that contains the contact, or raise the last error."""
-    error_of_last = WindowError("no grid for the contact")
+    last_error = WindowError("no grid for the contact")
     for window in windows:
         try:
             return solve(window)
         except WindowError as error:
-            error_of_last = error
-    raise error_of_last
+            last_error = error
+    raise last_error

@@ -21,8 +21,8 @@ from contactstudy.profiles.base import Shape, check_drop
 from contactstudy.profiles.geometric import FullCrown, PartialCrown
 from contactstudy.profiles.logarithmic import Logarithmic
 
-MIN_CONTACT_RATIO = 1.0  # Minimum contact length of a tilted roller at its end, over the half-width
-MIN_ARM_RATIO = 0.25  # Minimum distance of a balanced load from the roller's end, over the Hertz half-width
+MIN_CONTACT_RATIO = 1.0  # Minimum contact length of a tilted roller at its end over the half-width. Limit.
+MIN_ARM_RATIO = 0.25  # Minimum distance of a balanced load from the roller's end over the half-width. Limit.
 
 
 def check_balanced(case: Case) -> None:
@@ -35,7 +35,7 @@ def check_balanced(case: Case) -> None:
         raise _create_end_contact_error(case, f"where a load at {distance:.3g} m from the end is not balanced")
 
 
-def check_on_its_length(case: Case, grid: Grid, gap: FloatArray, pressure: FloatArray) -> None:
+def check_contact_length(case: Case, grid: Grid, gap: FloatArray, pressure: FloatArray) -> None:
     """Raise if a pressure (x, y) of a tilted roller is limited to its end; the gap is finite under the roller."""
     if not case.tilt and case.load_position is None:
         return
@@ -47,14 +47,14 @@ def check_on_its_length(case: Case, grid: Grid, gap: FloatArray, pressure: Float
         raise _create_end_contact_error(case, f"not {length:.3g} m")
 
 
-def _create_end_contact_error(case: Case, actual: str) -> InvalidInputError:
+def _create_end_contact_error(case: Case, actual_reach: str) -> InvalidInputError:
     """Return the error of a roller in contact at its end only."""
     name = "tilt" if case.load_position is None else "load_position"
     return InvalidInputError(
         name,
         getattr(case, name),
         f"such that the contact reaches further from the roller's end than {MIN_CONTACT_RATIO:g} half-width a, "
-        f"{case.hertz_half_width:.3g} m, {actual}",
+        f"{case.hertz_half_width:.3g} m, {actual_reach}",
         "tilt the roller less or load it nearer to its middle",
     )
 
@@ -84,8 +84,8 @@ USUAL_RANGES = {  # in engineering contacts, by quantity
     "half_width": UsualRange(1e-5, 0.1, "1"),
     # Over the roller's radius: 0.1 is the limit of the theory; only rubber reaches it.
     "approach": UsualRange(0.0, 0.1, "m", ("mm", "µm")),
-    "drop": UsualRange(0.0, 0.15, "m", ("mm", "µm")),  # crowns are micrometres, balls are cut short
-    "end drop": UsualRange(0.0, 0.5, "m", ("mm", "µm")),  # with corners
+    "drop": UsualRange(0.0, 0.15, "m", ("mm", "µm")),  # crowns drop by micrometres, ball-shaped rollers are truncated
+    "end drop": UsualRange(0.0, 0.5, "m", ("mm", "µm")),  # with rounded or chamfered corners
     "bending": STRENGTH_RANGE,
     "torsion": STRENGTH_RANGE,
     "yield_stress": STRENGTH_RANGE,
@@ -102,7 +102,7 @@ USUAL_RANGES = {  # in engineering contacts, by quantity
 }
 DROP_POSITIONS = {"drop": 0.4, "end drop": 0.49}  # where the drop is checked: from mid-length, over the length
 # A crown is unusual if its drop over half the roller's length is below both this length (metres) and this fraction of
-# the roller's length. Usual crown radii range from 0.1 to some 100 m.
+# the roller's length. Usual crown radii range from 0.1 to some 100 m. Physics.
 MIN_CROWN_DROP, MIN_CROWN_FRACTION = 1e-7, 1e-5
 
 
@@ -139,9 +139,9 @@ def warn_of_magnitudes(case: Case) -> None:
 
 
 def warn_of_values(*, stacklevel: int = 3, **values: float | FloatArray) -> None:
-    """Warn of unusual magnitudes by name; for arrays of the smallest and largest value."""
-    extremes = ((name, end) for name, value in values.items() for end in np.unique([np.min(value), np.max(value)]))
-    _warn((_describe(name, name, float(end)) for name, end in extremes), stacklevel + 1)
+    """Warn of unusual magnitudes by name; arrays are checked by their smallest and largest value."""
+    limits = ((name, limit) for name, value in values.items() for limit in np.unique([np.min(value), np.max(value)]))
+    _warn((_describe(name, name, float(limit)) for name, limit in limits), stacklevel + 1)
 
 
 def _warn(messages: Iterable[str], stacklevel: int) -> None:

@@ -85,8 +85,8 @@ class StickSlip:
             force = RESULTANTS[mode]
             amplitude, resultant = getattr(self, name), getattr(self, force)
             if amplitude is not None and resultant is not None:
-                allowed = "at most one of the two", "the other value follows"
-                raise InvalidInputError(f"{name}, {force}", (amplitude, resultant), *allowed)
+                values, allowed = (amplitude, resultant), "at most one of the two"
+                raise InvalidInputError(f"{name}, {force}", values, allowed, "the other value follows")
             if amplitude is None and resultant is None:
                 checks.store(self, **{name: 0.0})
         checks.store_numbers(self)
@@ -208,8 +208,8 @@ class Rolling(StickSlip):
         return SurfaceSpeeds(-speed * (1 + 0.5 * creepage), -speed * (1 - 0.5 * creepage))
 
 
-Motion = Sliding | Shift | Rolling  # Any motion
-MOTIONS_TEXT = "a Sliding(), a Shift(...) or a Rolling(...)"  # Text of the classes in messages
+Motion = Sliding | Shift | Rolling
+MOTIONS_TEXT = "a Sliding(), a Shift(...) or a Rolling(...)"  # in messages
 
 
 @dataclass(frozen=True)
@@ -220,30 +220,30 @@ class AxialFriction:
     values: tuple[float, ...]
 
 
-Friction = float | AxialFriction  # Friction of a case
+Friction = float | AxialFriction
 
 
 def check_friction(friction: object, motion: Motion, *, coupled: bool) -> Friction:
     """Return a number or an `AxialFriction` that motion and coupling allow, from a number or a DataArray along x."""
-    checked = _axial_friction(friction) if isinstance(friction, xr.DataArray) and friction.dims else friction
-    if not isinstance(checked, AxialFriction):
-        checked = checks.finite("friction", checked)
-    min_friction = min(checked.values) if isinstance(checked, AxialFriction) else checked
+    checked_friction = _axial_friction(friction) if isinstance(friction, xr.DataArray) and friction.dims else friction
+    if not isinstance(checked_friction, AxialFriction):
+        checked_friction = checks.finite("friction", checked_friction)
+    min_friction = min(checked_friction.values) if isinstance(checked_friction, AxialFriction) else checked_friction
     if not isinstance(motion, Sliding) and min_friction < 0:
         allowed = "not below zero with stick and slip: the slip reverses the traction"
         raise InvalidInputError("friction", min_friction, allowed)
-    if isinstance(motion, Sliding) and coupled and isinstance(checked, AxialFriction):
+    if isinstance(motion, Sliding) and coupled and isinstance(checked_friction, AxialFriction):
         raise InvalidInputError("coupled", True, "False in full sliding with friction that varies along the axis")
-    return checked
+    return checked_friction
 
 
 def _axial_friction(friction: xr.DataArray) -> AxialFriction:
     """Friction along the axis from a DataArray along x."""
     if friction.dims != ("x",) or "x" not in friction.coords:
         raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")
-    profile = in_si("friction", friction, "1")
-    x = checks.increasing("friction.x", profile["x"].values)
-    return AxialFriction(tuple(x.tolist()), tuple(checks.coordinates("friction", profile.values, "1").tolist()))
+    friction_si = in_si("friction", friction, "1")
+    x = checks.increasing("friction.x", friction_si["x"].values)
+    return AxialFriction(tuple(x.tolist()), tuple(checks.coordinates("friction", friction_si.values, "1").tolist()))
 
 
 def evaluate_friction(friction: Friction, x: FloatArray) -> float | FloatArray:

@@ -15,7 +15,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
 from contactstudy.profiles.base import check_drop, describe_profile
 
-ROUNDING = 1e-9  # Rounding over a cell. Accuracy
+ROUNDING = 1e-9  # Distance from a roller's end over a cell's width that counts as zero. Rounding.
 
 
 def snap_to_ends(x: FloatArray, half_length: float, width: float) -> FloatArray:
@@ -133,8 +133,8 @@ class Roller:
         The circle is the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a taper.
         `x` and `y` are distances from the roller's mid-length and from its centre line, metres.
         """
-        under_roller = np.abs(x) <= self.length / 2
+        is_under_roller = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)
-        drop[under_roller] = check_drop(self.profile, x[under_roller], self.length)
+        drop[is_under_roller] = check_drop(self.profile, x[is_under_roller], self.length)
         radius = local_radius(self.profile, x, self.length, self.radius)
         return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

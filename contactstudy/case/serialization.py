@@ -23,8 +23,8 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Profile, Shape, Sum, check_drop, describe_profile
 
-SAMPLE_COUNT = 401  # Number of samples of a user's profile, evenly spaced from end to end
-CasePart = TypeVar("CasePart")
+SAMPLE_COUNT = 401  # Samples of a user's profile, evenly spaced from end to end. Accuracy.
+Component = TypeVar("Component")
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,27 +56,28 @@ KINDS: dict[str, type[Any]] = {  # Classes of a case and its parts, by name
 }
 
 
-def to_dict(part: Any) -> dict[str, Any]:
+def to_dict(component: Any) -> dict[str, Any]:
     """JSON values, SI, of a case or one of its parts, with ``kind``; a user's profile requires its roller."""
-    return dict(_to_json(part, 0.0))
+    return dict(_to_json(component, 0.0))
 
 
-def _to_json(part: Any, length: float) -> Any:
-    """JSON values of a part; `length`: length of a user's profile, metres."""
-    name = type(part).__name__
-    if KINDS.get(name) is type(part):
-        length = getattr(part, "effective_length", part.length if isinstance(part, Roller) else length)
-        values = {entry.name: _to_json(getattr(part, entry.name), length) for entry in fields(part)}
+def _to_json(component: Any, length: float) -> Any:
+    """JSON values of a component; `length` is the length (m) of a user's profile."""
+    name = type(component).__name__
+    if KINDS.get(name) is type(component):
+        length = getattr(component, "effective_length", component.length if isinstance(component, Roller) else length)
+        values = {entry.name: _to_json(getattr(component, entry.name), length) for entry in fields(component)}
         return {"kind": name, **{key: value for key, value in values.items() if value is not None}}
-    if isinstance(part, Profile):
+    if isinstance(component, Profile):
         positions = np.linspace(-0.5, 0.5, SAMPLE_COUNT)
-        drops = [float(drop) if np.isfinite(drop) else None for drop in check_drop(part, positions * length, length)]
-        return _to_json(Sampled(describe_profile(part), tuple(positions.tolist()), tuple(drops)), length)
-    if isinstance(part, (tuple, list)):
-        return [_to_json(entry, length) for entry in part]
-    if isinstance(part, (bool, np.bool_)):
-        return bool(part)
-    return part if part is None or isinstance(part, str) else float(part)
+        profile_drops = check_drop(component, positions * length, length)
+        drops = tuple(float(drop) if np.isfinite(drop) else None for drop in profile_drops)
+        return _to_json(Sampled(describe_profile(component), tuple(positions.tolist()), drops), length)
+    if isinstance(component, (tuple, list)):
+        return [_to_json(entry, length) for entry in component]
+    if isinstance(component, (bool, np.bool_)):
+        return bool(component)
+    return component if component is None or isinstance(component, str) else float(component)
 
 
 def tables_within(values: Any) -> Iterator[Mapping[str, Any]]:
@@ -89,20 +90,20 @@ def tables_within(values: Any) -> Iterator[Mapping[str, Any]]:
         yield from tables_within(entry)
 
 
-def from_dict(values: Mapping[str, Any], part_class: type[CasePart]) -> CasePart:
-    """Case, or another part of a `part_class`, of the values that `to_dict` returns."""
-    name = part_class.__name__.lower()
+def from_dict(values: Mapping[str, Any], component_class: type[Component]) -> Component:
+    """Case, or another component of a `component_class`, of the values that `to_dict` returns."""
+    name = component_class.__name__.lower()
     try:
-        part = _from_json(values)
+        component = _from_json(values)
     except (TypeError, KeyError) as error:
         raise InvalidInputError(name, dict(values), f"values of a {name} of this version", str(error)) from None
-    if not isinstance(part, part_class):
+    if not isinstance(component, component_class):
         raise InvalidInputError(name, dict(values), f"values of a {name}")
-    return part
+    return component
 
 
 def _from_json(values: Any) -> Any:
-    """Case, or a part of a case, from JSON values."""
+    """Case, or a component of a case, from JSON values."""
     if isinstance(values, Mapping):
         arguments = {str(key): _from_json(value) for key, value in values.items() if key != "kind"}
         return KINDS[values["kind"]](**arguments)

@@ -12,7 +12,7 @@ from contactstudy import (
     choose_grid,
     solve,
 )
-from contactstudy.case.magnitudes import check_balanced, check_on_its_length
+from contactstudy.case.magnitudes import check_balanced, check_contact_length
 from tests.crowned_case import HALF_WIDTH, LENGTH, case_with
 
 
@@ -50,8 +50,8 @@ def test_short_contact_at_a_tilted_end_is_rejected(columns: slice) -> None:
     gap[10:90] = 0.0
     pressure[10:90][columns] = 1.0
     with pytest.raises(InvalidInputError, match=r"tilt = 0\.001: .* reaches further"):
-        check_on_its_length(tilted, grid, gap, pressure)
+        check_contact_length(tilted, grid, gap, pressure)
     # Without tilt any contact is allowed: a long contact may reach the end, a short contact may lie inside.
-    check_on_its_length(untilted, grid, gap, pressure)
-    check_on_its_length(tilted, grid, gap, np.where(np.isfinite(gap), 1.0, 0.0))
-    check_on_its_length(tilted, grid, gap, np.roll(pressure, 40, axis=0))
+    check_contact_length(untilted, grid, gap, pressure)
+    check_contact_length(tilted, grid, gap, np.where(np.isfinite(gap), 1.0, 0.0))
+    check_contact_length(tilted, grid, gap, np.roll(pressure, 40, axis=0))
