@@ -1,8 +1,9 @@
-"""Rules of CONTRIBUTING.md: short positional sequences, constants bound once, no circular imports, tests by module."""
+"""Rules of CONTRIBUTING.md: short positional sequences, bound and marked constants, no circular imports, test files."""
 
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
@@ -18,6 +19,8 @@ MOST_PARAMETERS = 7  # parameters of a function
 MOST_POSITIONAL = 2  # positional parameters of a function with more parameters
 MOST_VALUES = 3  # values of a tuple that a function returns
 TUPLE_FUNCTIONS = ("__reduce__", "_difference_matrices")  # pickle prescribes the tuple; four matrices of one form
+SOLVER_ROOMS = ("arrays", "case", "contact", "eigenstrain", "fields", "film", "kernels", "overlapping", "profiles")
+CONSTANT_MARK = re.compile(r"\b(Physics|Accuracy|Speed|Rounding|Limit)[.:]")
 
 ROOT = Path(contactstudy.__file__).parent
 MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.py"))}
@@ -143,8 +146,63 @@ def misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
     return misplaced
 
 
+def unmarked_constants(text: str) -> list[str]:
+    """Numeric constants of a module without a mark in their comment, a comment above or the docstring below."""
+    lines, body = text.splitlines(), ast.parse(text).body
+    numeric_names = {"np", "math"}
+    unmarked = []
+    for node, following in zip(body, [*body[1:], None], strict=True):
+        if not isinstance(node, ast.Assign) or not is_numeric(node.value, numeric_names):
+            continue
+        names = [name.id for name in ast.walk(node.targets[0]) if isinstance(name, ast.Name)]
+        if not all(map(str.isupper, names)):
+            continue
+        numeric_names |= set(names)
+        first = node.lineno - 1
+        while first and lines[first - 1].startswith("#"):
+            first -= 1
+        comments = [line.partition("#")[2] for line in lines[first : node.end_lineno]]
+        if isinstance(following, ast.Expr):
+            comments.append(str(getattr(following.value, "value", "")))
+        if not CONSTANT_MARK.search(" ".join(comments)):
+            unmarked += names
+    return unmarked
+
+
+def is_numeric(node: ast.expr, numeric_names: set[str]) -> bool:
+    """Whether an expression consists of numbers, of names of numbers, and of functions of numpy and math."""
+    values = [entry for entry in ast.walk(node) if isinstance(entry, ast.Constant | ast.Name)]
+    has_other_nodes = any(isinstance(entry, ast.Dict | ast.Lambda | ast.comprehension) for entry in ast.walk(node))
+    return not has_other_nodes and all(
+        entry.id in numeric_names if isinstance(entry, ast.Name) else type(entry.value) in (int, float)
+        for entry in values
+    )
+
+
 def test_package_follows_rules() -> None:
     assert not violations(MODULES)
+
+
+def test_constants_of_solver_state_their_purpose() -> None:
+    solver = {name: text for name, text in MODULES.items() if Path(name).parts[0] in SOLVER_ROOMS}
+    unmarked = {name: constants for name, text in solver.items() if (constants := unmarked_constants(text))}
+    assert not unmarked
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("STEPS = 3  # number of steps. Speed.", []),
+        ("# Number of steps. Speed.\nSTEPS = 3", []),
+        ('STEPS = 3\n"""Number of steps. Speed: more are slower."""', []),
+        ("STEPS = 3  # number of steps", ["STEPS"]),
+        ("import numpy as np\nLOW, HIGH = -np.sqrt(2.0), 10**8", ["LOW", "HIGH"]),
+        ("STEP = 0.5  # step. Accuracy.\nSTEPS = np.array([STEP, 2 * STEP])", ["STEPS"]),
+        ('NAME = "steps"\nsteps = 3', []),
+    ],
+)
+def test_constant_without_purpose_is_detected(text: str, names: list[str]) -> None:
+    assert unmarked_constants(text) == names
 
 
 @pytest.mark.parametrize("folder", ["benchmarks", "studies"])

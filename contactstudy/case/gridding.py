@@ -32,7 +32,7 @@ Window = TypeVar("Window")  # A width, a grid, or None for columns that the solv
 WINDOWS = (2.0, 3.0, 5.0, 8.0, *(12.0 * 1.5 ** np.arange(10)).tolist())
 """Default half-widths of the window over the Hertz half-width, tried in turn; the first is the default of
 :func:`choose_grid`. A short or tilted contact is wider than the line contact of the same load; a ridge that carries the
-load of the longest roller, of 1e7 half-widths, is 300 wide."""
+load of the longest roller, of 1e7 half-widths, is 300 wide. Speed."""
 
 MAX_CELL_INCREASE = 1.25  # Maximum cells over requested cells, for edges at an elastic roller's ends. Accuracy.
 

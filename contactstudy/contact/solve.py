@@ -100,13 +100,13 @@ def solve_contact(
     load : float, optional
         Normal load, N; either `load` or `approach`.
     friction : float or DataArray (x)
-        Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
+        Coefficient ``f``, a number or values along x, interpolated linearly: in full sliding the shear
         traction on the body is ``f`` times the pressure along +y; in any other motion this product bounds the traction.
     approach : float or sequence of float, optional
         Displacement of the shape from first touch, metres, relative to the reference of `displacement_z`. With
         several, the result has a dimension `approach`.
     counterbody : Counterbody, optional
-        Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
+        Second elastic body, whose shape is `gap`. Default: the shape is rigid.
     surface : LinearOperator, optional
         Symmetric positive operator from a pressure (x, y) in Pa to the displacement of the surfaces towards each other
         in metres, both raveled, instead of the body's: a coating, a measured compliance, sums of
@@ -164,8 +164,8 @@ def solve_contact(
             raise InvalidInputError(
                 "after", "a result", "omitted with several approaches: solve a history step by step"
             )
-        steps = checks.coordinates("approach", approach, "metres").tolist()
-        results = [solve_contact(**arguments | {"approach": step}).set_coords("approach") for step in steps]
+        approaches = checks.coordinates("approach", approach, "metres").tolist()
+        results = [solve_contact(**arguments | {"approach": step}).set_coords("approach") for step in approaches]
         return xr.concat(results, "approach", data_vars="all", coords="minimal", compat="override", join="exact")
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:
@@ -182,9 +182,9 @@ def solve_contact(
     cell_friction = evaluate_friction(check_friction(friction, motion, coupled=coupled), grid.x)
     if surface is not None:
         checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
-        cells = grid.cells_x * grid.cells_y
-        if surface.shape != (cells, cells):
-            raise InvalidInputError("surface.shape", surface.shape, f"{(cells, cells)}, the cells of the gap")
+        cell_count = grid.cells_x * grid.cells_y
+        if surface.shape != (cell_count, cell_count):
+            raise InvalidInputError("surface.shape", surface.shape, f"{(cell_count, cell_count)}, the cells of the gap")
         if counterbody is not None:
             raise InvalidInputError("counterbody", counterbody, "None with surface, the compliance of both bodies")
         if coupled or not isinstance(motion, Sliding):
@@ -201,34 +201,34 @@ def solve_contact(
         else 0.0,
         surface=surface,
     )
-    iteration = Settings(settings.tolerance, settings.max_iterations)
+    iteration_settings = Settings(settings.tolerance, settings.max_iterations)
     x, y = gap["x"].values, gap["y"].values
     if isinstance(motion, Sliding):
-        contact = contact_of(shape, iteration)
+        contact = contact_of(shape, iteration_settings)
         contact.warn_unless_converged()
         return contact_dataset(contact, cell_friction, x=x, y=y)
-    start = None if previous_step is None else _start_loads(previous_step, motion, grid, body)
-    under_shape = np.flatnonzero(np.isfinite(initial_gap).any(axis=1))
-    middle = 0.5 * float(grid.x_edges[under_shape[0]] + grid.x_edges[under_shape[-1] + 1])
+    start = None if previous_step is None else _read_start_loads(previous_step, motion, grid, body)
+    shape_columns = np.flatnonzero(np.isfinite(initial_gap).any(axis=1))
+    middle = 0.5 * float(grid.x_edges[shape_columns[0]] + grid.x_edges[shape_columns[-1] + 1])
     request = FrictionRequest(motion=motion, friction=cell_friction, reference_x=middle, coupled=coupled, start=start)
-    frictional = frictional_contact(shape, iteration, request)
-    frictional.warn_unless_converged()
-    return frictional.with_tractions(contact_dataset(frictional.contact, cell_friction, x=x, y=y))
+    friction_contact = frictional_contact(shape, iteration_settings, request)
+    friction_contact.warn_unless_converged()
+    return friction_contact.with_tractions(contact_dataset(friction_contact.contact, cell_friction, x=x, y=y))
 
 
-def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:
-    """Check and return pressure and tractions of the preceding step."""
+def _read_start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:
+    """Pressure and tractions of the preceding step, on the same cells."""
     checks.instance("after", after, xr.Dataset, "a result of solve_contact")
     if not isinstance(motion, Shift):
         raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady")
     missing = [name for name in ("pressure", "traction_x", "traction_y") if name not in after]
     if missing:
         raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
-    previous = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
-    centres = (previous.grid.x, previous.grid.y), (grid.x, grid.y)
-    if previous.grid.shape != grid.shape or not all(map(np.allclose, *centres)):
-        raise InvalidInputError("after", f"on {previous.grid.shape} cells", "on the cells of the gap")
-    return {load: top.values for load, top in previous.loads.items()}
+    previous_loads = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
+    centres = (previous_loads.grid.x, previous_loads.grid.y), (grid.x, grid.y)
+    if previous_loads.grid.shape != grid.shape or not all(map(np.allclose, *centres)):
+        raise InvalidInputError("after", f"on {previous_loads.grid.shape} cells", "on the cells of the gap")
+    return {load: top.values for load, top in previous_loads.loads.items()}
 
 
 def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatArray, y: FloatArray) -> xr.Dataset:

@@ -2,7 +2,7 @@
 
 Stress functions of (x, z) from piecewise polynomials: in the plane Airy's function gives ``s_xx = f,zz``,
 ``s_zz = f,xx``, ``s_xz = -f,xz``; across the plane ``t_xy = g,z``, ``t_yz = -g,x``. Faces are free where f and its
-slope, and g, vanish. The stress of the eigenstrain e makes the complementary energy least (K. Washizu, Variational
+slope, and g, vanish. The stress of the eigenstrain e minimises the complementary energy (K. Washizu, Variational
 Methods in Elasticity and Plasticity, 2nd ed. 1975):
 
     (1 - nu**2) / E  int lap f lap h  =  -int (e_xx + nu e_yy) h,zz + (e_zz + nu e_yy) h,xx - 2 e_xz h,xz
@@ -37,7 +37,7 @@ class Splines:
     edges: FloatArray  # edges of the elements, metres, increasing
     degree: int  # degree of the polynomials
     continuity: int  # number of derivatives that are continuous between elements
-    vanishing_orders: int  # how many of value, slope, ... vanish on both sides.
+    vanishing_orders: int  # number of derivatives, from the value on, that vanish on both sides
 
     @property
     def count(self) -> int:
@@ -59,9 +59,9 @@ class Splines:
     @cached_property
     def _gauss(self) -> tuple[FloatArray, FloatArray]:
         """Points and weights that integrate products of two functions exactly: arrays (element, point)."""
-        node, weight = np.polynomial.legendre.leggauss(self.degree + 1)
+        nodes, weights = np.polynomial.legendre.leggauss(self.degree + 1)
         half_widths = 0.5 * np.diff(self.edges)[:, None]
-        return self.edges[:-1, None] + half_widths * (1 + node), half_widths * weight
+        return self.edges[:-1, None] + half_widths * (1 + nodes), half_widths * weights
 
     def products(self, derivative: int) -> sparse.csr_array:
         """Integrals of products of two functions' derivatives: array (function, function)."""
@@ -96,8 +96,8 @@ class StressFunction:
         weights = ENERGY_WEIGHTS[self.x.vanishing_orders]
         energy = sum(weight * sparse.kron(self.x.products(i), self.z.products(j)) for (i, j), weight in weights.items())
         scale = 1 / np.sqrt(energy.diagonal())
-        scaled = sparse.csc_array(sparse.diags_array(scale) @ energy @ sparse.diags_array(scale))
-        factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        scaled_energy = sparse.csc_array(sparse.diags_array(scale) @ energy @ sparse.diags_array(scale))
+        factor = splu(scaled_energy, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         return factor, scale
 
     def values(self, x: FloatArray, z: FloatArray) -> Factors:
@@ -134,7 +134,7 @@ XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of s
 
 
 def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
-    """Edges from `start` (left out) to `stop`; the widths of the elements grow from about `first_width`."""
+    """Edges from `start` (excluded) to `stop`; the widths of the elements grow from about `first_width`."""
     count = max(1, int(np.ceil(np.log1p(abs(stop - start) * (GROWTH - 1) / first_width) / np.log(GROWTH))))
     # The widths are shrunk a little, such that the last element ends at `stop`.
     edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
@@ -143,7 +143,7 @@ def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
 
 
 def grade_to_face(start: float, face: float, first_width: float) -> FloatArray:
-    """Edges from `start` (left out) to a free face, with fine elements at `start` and at the face."""
+    """Edges from `start` (excluded) to a free face, with fine elements at `start` and at the face."""
     midpoint = 0.5 * (start + face)
     if start == face:
         return np.zeros(0)
@@ -246,14 +246,14 @@ class EigenstrainSolution:
     def eigenstrain_at(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Eigenstrains at the tensor product of positions: array (6, x, z); zero beyond the cells."""
         body = self.body
-        indices, inside = [], []
+        indices, is_inside = [], []
         for points, edges in ((x, body.x_edges), (z, body.z_edges)):
             index = np.searchsorted(edges, points, side="right") - 1
             index[points == edges[-1]] = edges.size - 2
-            inside.append((index >= 0) & (index < edges.size - 1))
+            is_inside.append((index >= 0) & (index < edges.size - 1))
             indices.append(np.clip(index, 0, edges.size - 2))
         strain = self.eigenstrain[:, indices[0][:, None], indices[1]]
-        return np.where(inside[0][:, None] & inside[1], strain, 0.0)
+        return np.where(is_inside[0][:, None] & is_inside[1], strain, 0.0)
 
     def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Displacements z (into the body) and y of the top at positions x, metres, relative to the lowest elements."""
@@ -284,7 +284,7 @@ def _split_cells(edges: FloatArray, splits: int, max_width: float) -> FloatArray
     return np.append(np.concatenate(starts), edges[-1])
 
 
-COLUMNS_PER_SOLUTION = 256  # Right-hand sides that are solved for at once. Speed.
+COLUMNS_PER_SOLUTION = 256  # Right-hand sides of one solution. Speed.
 
 
 def cell_influence(body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Callable[[FloatArray], FloatArray]:
@@ -293,18 +293,18 @@ def cell_influence(body: EigenstrainBody, along_x: IntArray, along_z: IntArray) 
 
     def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
         """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-        x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
-        products = [sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)]
+        x, z = (sparse.csc_array(matrix) for matrix in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
+        products = [sparse.kron(x[:, [cell]], z[:, [cell]], format="csc") for cell in range(along_x.size)]
         return sparse.csc_array(sparse.hstack(products))
 
     def influence_matrix(function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray) -> FloatArray:
         """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
-        stacked = sparse.csc_array(sparse.hstack(blocks))
-        averages = sparse.csr_array(stacked.T)
-        influence = np.empty((stacked.shape[1],) * 2)
+        right_sides = sparse.csc_array(sparse.hstack(blocks))
+        averages = sparse.csr_array(right_sides.T)
+        influence = np.empty((right_sides.shape[1],) * 2)
         for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
-            right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
-            influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
+            columns = right_sides[:, start : start + COLUMNS_PER_SOLUTION].toarray()
+            influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(columns)
         return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
 
     (airy_function, antiplane_function), (integrals, antiplane_integrals) = body.functions, body.integrals
@@ -356,8 +356,8 @@ class PeriodicLayers:
         """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
         waves, z = 2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)), self.z_edges
         # The elements over depth: the layers, and elements above and below.
-        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
-        elements = np.concatenate([above, z, grow_edges(z[-1], FAR_DISTANCE * z[-1], z[-1] - z[-2])])
+        edges_above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
+        elements = np.concatenate([edges_above, z, grow_edges(z[-1], FAR_DISTANCE * z[-1], z[-1] - z[-2])])
         splines = Splines(elements, degree, continuity=order - 1, vanishing_orders=order)
         products = [splines.products(derivative).toarray() for derivative in range(order + 1)]
         overlaps = [splines.integrals(z, derivative) for derivative in range(order + 1)]
@@ -392,8 +392,8 @@ class PeriodicLayers:
         """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
-        in_plane = np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
-        stress[[YY, ZZ, YZ]] = self._apply(self._airy_matrices, in_plane)
+        plane_strains = np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
+        stress[[YY, ZZ, YZ]] = self._apply(self._airy_matrices, plane_strains)
         stress[XX] = nu * (stress[YY] + stress[ZZ]) - self.material.young * e[XX]
         if e[[XY, XZ]].any():
             stress[[XY, XZ]] = self._apply(self._antiplane_matrices, e[[XY, XZ]])

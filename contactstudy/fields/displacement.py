@@ -86,16 +86,16 @@ def displacement_under(
         fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
         for term in body.terms:
             length, reference = term.extent[1] - term.extent[0], reference_distance(term.extent)
-            end_parts: dict[Load, FloatArray] = {}
+            end_displacements: dict[Load, FloatArray] = {}
             if term.free_ends and cell_loads.values.any():
                 problem = end_problem(term.free_ends, material.poisson, cell_loads, shape_key, grid, loads=directions)
-                (end_parts,) = end_fields(problem, DISPLACEMENT, [points], reference)
+                (end_displacements,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
                 field = half_space_field(cell_loads.values, influence, grid, points, extent=term.extent, shape=shape)
                 field = kernel_factor(material) * field
-                if load in end_parts:
-                    field += end_parts[load] / (2 * material.shear_modulus)
+                if load in end_displacements:
+                    field += end_displacements[load] / (2 * material.shear_modulus)
                 total += term.weight * field
         return {load: [field] for load, field in fields.items()}
 

@@ -26,13 +26,13 @@ from contactstudy.fields.positions import Positions
 from contactstudy.fields.stress import stresses_at
 from contactstudy.kernels.load import Load
 
-SERIES_TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
-FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])  # least ones, over a: cells are accurate to 1e-3. Accuracy
-MIN_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
+SERIES_TERMS = 4  # terms of the Chebyshev series; the last term enters the error. Accuracy.
+FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])  # over a; nearer stresses err by over 1e-3. Accuracy.
+MIN_CELLS = 8  # least number of loaded cells across a section, for edges to a few hundredths of a cell. Accuracy.
 
 
 class EdgeSections(NamedTuple):
-    """Cross-sections of a contact, each with the rows of cells outside of its trailing edge that the tension needs."""
+    """Cross-sections of a contact, each with rows of cells outside of its trailing edge for the extrapolation."""
 
     grid: Grid
     sign: float  # direction of the traction along y: the trailing edge has the opposite direction
@@ -55,8 +55,8 @@ class EdgeSections(NamedTuple):
         low, high = contact_borders(pressure[columns], grid.y, gap[columns])
         edges, half_widths = low if sign > 0 else high, 0.5 * (high - low)
         # All stresses at rows of cells take one evaluation.
-        numbers = sign * (edges - grid.y[0])[:, None] - half_widths[:, None] * FIT_DISTANCES
-        rows = (sign * np.floor(numbers / grid.dy + 1e-9)).astype(np.int64)
+        row_positions = sign * (edges - grid.y[0])[:, None] - half_widths[:, None] * FIT_DISTANCES
+        rows = (sign * np.floor(row_positions / grid.dy + 1e-9)).astype(np.int64)
         return cls(grid, sign, columns, edges=edges, half_widths=half_widths, rows=rows)
 
     @property

@@ -76,16 +76,16 @@ def equivalent_loads(
         if operators is None:
             coords = {"x": coordinates_x, "y": coordinates_y}
             return describe(xr.Dataset({"P_h1": (("x", "y"), top_load)}, coords=coords))
-        to_top_load, face_operators = operators.equivalent(load)
-        top_load += factor * to_top_load.matvec(cell_loads.ravel()).reshape(top_load.shape)
+        top_operator, face_operators = operators.equivalent(load)
+        top_load += factor * top_operator.matvec(cell_loads.ravel()).reshape(top_load.shape)
         face_loads = [
             factor * operator.matvec(cell_loads.ravel()).reshape(grid.cells_y, -1) for operator in face_operators
         ]
-        face_totals = [np.asarray(sum(pair)) for pair in zip_longest(face_totals, face_loads, fillvalue=0.0)]
+        face_totals = [np.asarray(sum(terms)) for terms in zip_longest(face_totals, face_loads, fillvalue=0.0)]
         if operators.reference is not None:
-            part = "the part of an eccentric load that makes no stress"
+            subject = "the part of an eccentric load that makes no stress"
             attributes["reference_distance"] = operators.reference
-            attributes["reference"] = f"{part} is zero at |y| = reference_distance (m)"
+            attributes["reference"] = f"{subject} is zero at |y| = reference_distance (m)"
     fields = {"P_h1": (("x", "y"), top_load, attributes)}
     fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
     return describe(xr.Dataset(fields, coords={"x": coordinates_x, "y": coordinates_y, "z": depths}))

@@ -17,14 +17,14 @@ from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-MAX_DISTANCE = 1e4  # largest distance of a position over the size of load and body: the work grows with it along y
-SPACING_GROWTH = 0.5  # growth of the default spacing of stresses with the distance from a feature
-MAX_SPACING = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
-MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width
+MAX_DISTANCE = 1e4  # largest distance of a position over the size of load and body, for bounded work. Limit.
+SPACING_GROWTH = 0.5  # growth of the default spacing with the distance from a peak or an end. Accuracy.
+MAX_SPACING = 0.2  # default spacing at a free end and below the top over the half-width. Accuracy.
+MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width. Accuracy.
 
 STRESS_DEPTH, STRESS_DEPTH_RANGE = 0.6, (0.01, 0.75)
 """Depth of the largest stress below a peak of the pressure, over the peak's width (under a line contact 0.70, under a
-sphere 0.48), and its range over the Hertz half-width."""
+sphere 0.48), and its range over the Hertz half-width. Accuracy."""
 
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
@@ -74,9 +74,9 @@ def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
     """Move positions within rounding of an end onto the end; raise for positions outside the body."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
-    outside = (x < low - rounding) | (x > high + rounding)
-    if outside.any():
-        raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
+    is_outside = (x < low - rounding) | (x > high + rounding)
+    if is_outside.any():
+        raise InvalidInputError("x", float(x[is_outside][0]), f"inside the body, {low:g} to {high:g} m")
     return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))
 
 
@@ -86,13 +86,13 @@ def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width
     ends = np.array([end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)])
     spacings = np.append(2 * grid.widths[is_loaded], np.full(2, MAX_SPACING * half_width))
     centres, half_length = np.append(grid.x[is_loaded], ends), 0.5 * float(ends[1] - ends[0])
-    from_first, from_second = (
+    first_half, second_half = (
         _grade_positions([0.0, half_length], distances, spacings)
         for distances in (centres - ends[0], ends[1] - centres)
     )
     if grid.is_symmetric and np.array_equal(is_loaded, is_loaded[::-1]):
-        from_second = from_first  # without their different rounding
-    return np.concatenate([ends[0] + from_first, ends[1] - from_second[-2::-1]])
+        second_half = first_half  # without their different rounding
+    return np.concatenate([ends[0] + first_half, ends[1] - second_half[-2::-1]])
 
 
 def default_depths(half_width: float, peak_width: float) -> FloatArray:

@@ -108,7 +108,7 @@ def _label_stresses(body: Body, grid: Grid, stresses: FloatArray, positions: Fie
 
 def _clear_edge_traction(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
-    if all(part.free_ends for part in body.terms):
+    if all(term.free_ends for term in body.terms):
         is_on_end, is_on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
         for component in (0, 3, 4):
             stresses[component][np.ix_(is_on_end, np.ones(points.y.size, bool), is_on_top)] = 0.0
@@ -126,8 +126,8 @@ def stresses_at(
     def unit_fields(directions: tuple[Load, ...], cell_loads: ArrayKey) -> dict[Load, list[FloatArray]]:
         keys = {load: (body, grid, load, cell_loads, point_keys, shape_key) for load in directions}
         fields: dict[Load, list[FloatArray]] = {load: recall("stress fields", key) or [] for load, key in keys.items()}
-        missing = tuple(load for load, field in fields.items() if not field)
-        missing_fields = _unit_stress(body, grid, missing, cell_loads, point_sets=point_sets, shape=shape_key)
+        missing_loads = tuple(load for load, field in fields.items() if not field)
+        missing_fields = _unit_stress(body, grid, missing_loads, cell_loads, point_sets=point_sets, shape=shape_key)
         for load, field in missing_fields.items():
             fields[load] = retain("stress fields", keys[load], field)
         return fields
@@ -148,21 +148,21 @@ def _unit_stress(
     poisson, shape_values = body.material.poisson, None if shape is None else shape.values
     fields: dict[Load, list[FloatArray]] = {}
     for term in body.terms:
-        end_parts: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
+        end_stresses: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
         if term.free_ends and cell_loads.values.any() and loads:
             problem = end_problem(term.free_ends, poisson, cell_loads, shape, grid, loads=loads)
-            end_parts = end_fields(problem, STRESS, point_sets, reference_distance(term.extent))
+            end_stresses = end_fields(problem, STRESS, point_sets, reference_distance(term.extent))
         for load in loads:
             term_fields, influence = [], stress_influence(load, poisson)
-            for points, end_part in zip(point_sets, end_parts, strict=True):
+            for points, end_stress in zip(point_sets, end_stresses, strict=True):
                 field = half_space_field(
                     cell_loads.values, influence, grid, points, extent=term.extent, shape=shape_values
                 )
-                if load in end_part:
+                if load in end_stress:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)
-                        end_part[load][component][..., points.z == 0] = 0.0
-                    field = np.add(end_part[load], field, out=end_part[load])
+                        end_stress[load][component][..., points.z == 0] = 0.0
+                    field = np.add(end_stress[load], field, out=end_stress[load])
                 term_fields.append(field if term.weight == 1 else term.weight * field)
             fields[load] = (
                 [a + b for a, b in zip(fields[load], term_fields, strict=True)] if load in fields else term_fields
@@ -195,10 +195,10 @@ def contact_stresses(
         return stresses_at(body, loads, search.grid, [points], pressure)[0]
 
     # All sets share one solution for the equivalent loads.
-    on_ends = [Points(end_positions, *end_yz)] if end_positions.size else []
-    point_sets = [positions.points, *on_ends, *search.samples, *further_points]
+    end_points = [Points(end_positions, *end_yz)] if end_positions.size else []
+    point_sets = [positions.points, *end_points, *search.samples, *further_points]
     field, *stresses = stresses_at(body, loads, search.grid, point_sets, pressure)
-    residual = _traction_residual(loads, stresses.pop(0)) if on_ends else 0.0
+    residual = _traction_residual(loads, stresses.pop(0)) if end_points else 0.0
     sample_count = len(search.samples)
     maximum = find_stress_maximum(search, stresses[:sample_count], stress_at)
     maximum = include_points(maximum, positions.points, field, search, stress_at)

@@ -23,19 +23,19 @@ from contactstudy.fields.loads import Loads
 from contactstudy.kernels.load import Load
 from contactstudy.stress import von_mises_of
 
-AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width
+AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width. Accuracy.
 
 PEAK_DEPTHS = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
-"""Depths below a peak, over its width: the largest stress under a line contact is at 0.70, under a sphere at 0.48."""
+"""Depths below a peak, over its width. Accuracy: the largest stress under a line contact is at 0.70, a sphere 0.48."""
 
 END_DISTANCES = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
-"""Distances of points on the axis from the ends of the contact, over the half-width."""
+"""Distances of points on the axis from the ends of the contact, over the half-width. Accuracy."""
 
-LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over the half-width of the section
-AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
-MIN_SECOND_PEAK = 0.6  # Least peak of a searched half over the largest: a lower one may stress a free end more
-SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
-BORDER_SHIFT = 0.15  # error of the position of a border of stick and slip, cells: that of Carter's. Accuracy.
+LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # along y, over the half-width of the section. Accuracy.
+AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width. Accuracy.
+MIN_SECOND_PEAK = 0.6  # least peak over the largest for a search around it, because of free ends. Accuracy.
+SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound. Rounding.
+BORDER_SHIFT = 0.15  # error of a border of stick and slip, over a cell, in Carter's contact. Accuracy.
 RIM_CELLS = 1  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
@@ -45,7 +45,7 @@ class Border:
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
     # The bound less the traction grows inside the border like a square root.
 
-    def __init__(self, loads: Loads, materials: tuple[Material, Material | None], inside_rim: BoolArray) -> None:
+    def __init__(self, loads: Loads, materials: tuple[Material, Material | None], is_inside_rim: BoolArray) -> None:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -55,15 +55,15 @@ class Border:
         bound = ratio_size.max(axis=1, keepdims=True)
         deficit = 1 - ratio_size / np.where(bound > 0, bound, 1.0)
         is_sticking = (pressure > 0) & (deficit > SLIP_TOLERANCE) & (bound > 0)
-        missed, represents = np.zeros((2, *pressure.shape), bool)
+        is_missed, represents = np.zeros((2, *pressure.shape), bool)
         for step in (1, -1):
             is_slipping = np.roll((pressure > 0) & ~is_sticking, step, axis=1)
             is_border = is_sticking & is_slipping
-            has_cell = is_border & np.roll(is_sticking & inside_rim, -step, axis=1)
-            missed |= is_border & ~has_cell
+            has_cell = is_border & np.roll(is_sticking & is_inside_rim, -step, axis=1)
+            is_missed |= is_border & ~has_cell
             column, first_row = np.nonzero(has_cell)
             second_row, slipping_row = first_row + step, first_row - step
-            # The integrals of this root up to both cells' far faces place the border relative to the first centre.
+            # The integrals of this root up to both cells' far faces give the border's distance from the first centre.
             sums = deficit[column, first_row], deficit[column, first_row] + deficit[column, second_row]
             fraction = (sums[0] / sums[1]) ** (2 / 3)
             distance = np.clip(fraction / (1 - fraction) - 0.5, -BORDER_SHIFT, 1.0)
@@ -79,16 +79,16 @@ class Border:
         # Without a representing cell the cusp is missed. At the distance d from a narrow stick zone at the leading edge
         # of Carter's contact, here half a cell, the stress is lower by ``f p sqrt(2 d / a)``.
         cells = np.maximum(np.count_nonzero(pressure, axis=1), 1)
-        missed_error = (missed * bound * pressure).max(axis=1) * np.sqrt(2 / cells)
+        missed_error = (is_missed * bound * pressure).max(axis=1) * np.sqrt(2 / cells)
         self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
         self.represents = represents  # (x, y): whether the cell represents a border
         self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
         # In cells that stick the relative strain along y is constant, and the tractions' stress is 2 beta p.
-        along_y, poisson = 1 - 2 * dundurs_parameter(*materials), materials[0].poisson
-        self.pressure_stresses = np.array([poisson * (1 + along_y), along_y, 1.0])  # -xx, -yy, -zz over the pressure
-        # A change of the pressure changes the von Mises stress at most by that of the changed stresses.
-        change = von_mises_of(*[*self.pressure_stresses, 0 * bound, bound, 0 * bound])  # over that of the pressure
-        self.error = change * border_error + missed_error[:, None]  # (x, y): error of the stress on the top, Pa
+        factor, poisson = 1 - 2 * dundurs_parameter(*materials), materials[0].poisson
+        self.pressure_stresses = np.array([poisson * (1 + factor), factor, 1.0])  # -xx, -yy, -zz over the pressure
+        # A change of the pressure changes the von Mises stress by at most the von Mises stress of the changes.
+        stress_ratio = von_mises_of(*[*self.pressure_stresses, 0 * bound, bound, 0 * bound])
+        self.error = stress_ratio * border_error + missed_error[:, None]  # (x, y): error of the stress on the top, Pa
 
 
 class Search(NamedTuple):
@@ -139,7 +139,7 @@ def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None =
         return Search(grid, extent, inside_rim, border, samples=[], peak_width=np.inf)
     samples: list[Points] = []
     widths: list[float] = []
-    symmetric = bool(  # about the middle of the window, up to errors of the solver
+    is_symmetric = bool(  # about the middle of the window, up to errors of the solver
         np.isinf(extent[0]) == np.isinf(extent[1])
         and grid.is_symmetric
         and all(
@@ -163,7 +163,7 @@ def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None =
         centres = grid.x[columns]
         return Points(centres[select_separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
 
-    for peak in _peaks(column_maxima, symmetric=symmetric):
+    for peak in _peaks(column_maxima, symmetric=is_symmetric):
         width = min(variation_lengths(pressure, grid.x, grid.dy, peak, rising=False))
         widths.append(width)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
@@ -175,8 +175,8 @@ def place_search(body: Body, loads: Loads, grid: Grid, roller: Material | None =
     first_edge, last_edge = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     distances = np.append(half_width * END_DISTANCES, 0.5 * (last_edge - first_edge))
     distances = distances[distances <= 0.5 * (last_edge - first_edge)]
-    # One point of the second half is included: the middle is inside the range.
-    x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
+    # By symmetry one point of the second half suffices: the middle is inside the range.
+    x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if is_symmetric else distances)])
     samples.append(nearest_cells(x, column, half_width * AXIS_DEPTHS, spacing=0.1 * half_width))
     return Search(grid, extent, inside_rim, border, samples=samples, peak_width=min(widths))
 
@@ -200,9 +200,9 @@ def _peaks(maxima: FloatArray, *, symmetric: bool) -> list[int]:
     return sorted(high_peaks, key=lambda peak: -maxima[peak])
 
 
-RISE_ERROR = 0.25  # Error over the polynomials' rise above the largest sample: two may agree by chance. Accuracy
+RISE_ERROR = 0.25  # Least error over a polynomial's rise above the samples: two may agree by chance. Accuracy.
 REFINEMENT_TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
-LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])  # about a position, over its depth. Accuracy
+LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])  # about a position, over its depth. Accuracy.
 TOP_MARGIN = 1.25  # factor on the largest sample on the top for the decision to search around it. Accuracy.
 MAX_REFINEMENTS = 6  # largest number of refinements. Speed.
 
@@ -233,9 +233,9 @@ def find_stress_maximum(
     if not search.samples:
         return StressMaximum(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
-    *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
+    *peaks, axis_samples = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
     maximum = max((_refine_maximum(_maximum_between_samples(*peak), search, stress_at) for peak in peaks), key=VALUE)
-    axis_sample = _maximum_of_samples(*axis)
+    axis_sample = _maximum_of_samples(*axis_samples)
     if axis_sample.maximum.value > maximum.value:
         maximum = max(maximum, _refine_maximum(axis_sample, search, stress_at), key=VALUE)
     for points, field in samples:
@@ -260,14 +260,14 @@ def include_points(
     is_deep = points.z >= search.shallowest
     depth_groups = [is_deep] if is_deep.any() else []
     depth_groups += [points.z == depth for depth in points.z[~is_deep]]
-    for in_group in depth_groups:
-        group = points._replace(z=points.z[in_group])
-        inside_rim = None if in_group is is_deep else search.inside_rim_at(group)
-        sample = _maximum_of_samples(group, stresses[..., in_group], inside_rim)
+    for is_in_group in depth_groups:
+        group = points._replace(z=points.z[is_in_group])
+        inside_rim = None if is_in_group is is_deep else search.inside_rim_at(group)
+        sample = _maximum_of_samples(group, stresses[..., is_in_group], inside_rim)
         value, position = sample.maximum.value, sample.maximum.position
         if maximum.value < value <= maximum.value + maximum.error:
             maximum = maximum._replace(value=value, position=position)
-        elif value > maximum.value and in_group is is_deep:
+        elif value > maximum.value and is_in_group is is_deep:
             neighbourhood = _neighbourhood(position, search)
             maximum = _refine_maximum(
                 _maximum_between_samples(neighbourhood, stress_at(neighbourhood)), search, stress_at
@@ -380,7 +380,7 @@ def _maximum_between_samples(points: Points, stresses: FloatArray) -> _SampleMax
 
 
 def _closer_points(sample: _SampleMaximum, search: Search) -> tuple[Points, bool]:
-    """Return closer points around the largest one, shifted if it is outermost, and whether it is not outermost."""
+    """Return closer points around the largest point, shifted if it is outermost, and whether it lies inside."""
     axes, is_inside = [], True
     limits = (search.extent, (-np.inf, np.inf), (search.shallowest, np.inf))
     for axis, index, (low, high) in zip(sample.points, sample.indices, limits, strict=True):
@@ -390,7 +390,7 @@ def _closer_points(sample: _SampleMaximum, search: Search) -> tuple[Points, bool
             (index == 0 and centre > low) or (index == axis.size - 1 and centre < high)
         )
         is_inside = is_inside and not is_outermost
-        reach = 2 * (next_position - previous_position) if is_outermost else 0.0
-        start, stop = max(min(previous_position, centre - reach), low), min(max(next_position, centre + reach), high)
+        shift = 2 * (next_position - previous_position) if is_outermost else 0.0
+        start, stop = max(min(previous_position, centre - shift), low), min(max(next_position, centre + shift), high)
         axes.append(np.linspace(start, stop, 5) if axis.size > 1 else axis)
     return Points(*axes), is_inside

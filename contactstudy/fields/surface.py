@@ -1,6 +1,6 @@
 """Displacements of the top of a body under pressure and traction: the operator of every contact solution.
 
-The operator of a body is the sum over its parts, each a half-space with mirrored loads and the end correction. On
+The operator of a body is the sum over its terms, each a half-space with mirrored loads and the end correction. On
 uniform cells it is a convolution, observed at the centres; on columns it is a dense matrix along x per wavenumber along
 y, observed as means over the widths of the columns.
 """
@@ -32,11 +32,11 @@ from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.surface import EndCorrection, EndKernel, EndRequest, end_kernel
 from contactstudy.threads import one_blas_thread
 
-REFERENCE_LENGTHS = 10.0  # Distance along y, in lengths of the body, at which its top has no displacement
+REFERENCE_LENGTHS = 10.0  # Distance along y over the body's length at which its top has no displacement. Physics.
 
 
 class UniformOperator:
-    """Displacements of the top of one part of a body."""
+    """Displacements of the top of one term of a body, on uniform cells."""
 
     def __init__(
         self, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
@@ -65,33 +65,33 @@ class UniformOperator:
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cell centres in some `directions` under `loads` (Pa): arrays (x, y)."""
-        spectra, projected = {}, {}
+        spectra, projected_loads = {}, {}
         for load, cells in loads.items():
             transform = self._load_transforms[load]
             lateral = transform.transform_y(load.sign_x * cells[::-1] if self._is_reversed else cells)
             if self._correction is not None:
-                projected[load] = self._correction.project_loads(load, lateral)
+                projected_loads[load] = self._correction.project_loads(load, lateral)
             spectra[load] = transform.transform_x()
         displacements = {}
         for direction in directions:
             transform = self._field_transforms[direction]
-            self._fill(transform.spectrum, direction, spectra)
+            self._fill_spectrum(transform.spectrum, direction, spectra)
             end_displacement = None
             if self._correction is not None:
-                end_displacement = self._correction.compute_displacement(direction, projected, self.grid.cells_x)
+                end_displacement = self._correction.compute_displacement(direction, projected_loads, self.grid.cells_x)
             displacement = transform.invert(end_displacement)  # eq. (5)
             displacements[direction] = direction.sign_x * displacement[::-1] if self._is_reversed else displacement
         return displacements
 
-    def _fill(self, total: ComplexArray, direction: Load, loads: Mapping[Load, ComplexArray]) -> None:
+    def _fill_spectrum(self, total: ComplexArray, direction: Load, loads: Mapping[Load, ComplexArray]) -> None:
         """Fill a buffer with the spectrum of the displacement that the mirrored half-space has under `loads`."""
         # A sine transform begins with wavenumber 1, a cosine transform with wavenumber 0.
         mirrored = bool(self._field_transforms[direction].mirror)
         for index, (load, spectrum) in enumerate(loads.items()):
             response = Response(direction, load)
-            kernel, direct_part, load_spectrum = self._spectra[response], total, spectrum
+            kernel, product_spectrum, load_spectrum = self._spectra[response], total, spectrum
             if mirrored and response.sign_x < 0:
-                direct_part, load_spectrum = (
+                product_spectrum, load_spectrum = (
                     (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
                 )
                 if not index:
@@ -100,9 +100,9 @@ class UniformOperator:
             powers = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
             phased_kernel = (1j, -1)[powers - 1] * kernel if powers else kernel
             if index:
-                direct_part += phased_kernel * load_spectrum
+                product_spectrum += phased_kernel * load_spectrum
             else:
-                np.multiply(phased_kernel, load_spectrum, out=direct_part)
+                np.multiply(phased_kernel, load_spectrum, out=product_spectrum)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure for a normal displacement `gap`: the inverse spectrum of the mirrored half-space."""
@@ -135,7 +135,7 @@ def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
 def end_kernel_of(
     term: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
 ) -> EndKernel | None:
-    """Kernel of a part's free ends, None without free ends; raise for tangential displacements of "single-mirror"."""
+    """Kernel of a term's free ends, None without free ends; raise for tangential displacements of "single-mirror"."""
     if term.free_ends is None:
         return None
     if term.free_ends.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
@@ -150,7 +150,7 @@ def end_kernel_of(
 
 
 def reference_distance(extent: Extent) -> float:
-    """Distance along y at which the displacement of a part is zero, metres; infinite unless it has two ends."""
+    """Distance along y at which the displacement of a term is zero, metres; infinite unless it has two ends."""
     return REFERENCE_LENGTHS * (extent[1] - extent[0])
 
 
@@ -171,13 +171,13 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
     along_y = even_spectrum(kernel) if response.sign_y > 0 else odd_spectrum(kernel)
     factor = kernel_factor(material)
     if response.sign_x < 0:
-        odd_part = along_y[1:-1]
-        if odd_part.size:  # the sine transform needs two columns
-            odd_part = factor * fft.dst(odd_part, type=1, axis=0)
+        odd_rows = along_y[1:-1]
+        if odd_rows.size:  # the sine transform needs two columns
+            odd_rows = factor * fft.dst(odd_rows, type=1, axis=0)
         if mirrored:
-            return np.asarray(odd_part if response.displacement.sign_x < 0 else -odd_part)
-        zero_row = np.zeros((1, odd_part.shape[1]))
-        return np.concatenate([zero_row, -odd_part, zero_row, odd_part[::-1]])
+            return np.asarray(odd_rows if response.displacement.sign_x < 0 else -odd_rows)
+        zero_row = np.zeros((1, odd_rows.shape[1]))
+        return np.concatenate([zero_row, -odd_rows, zero_row, odd_rows[::-1]])
     spectrum = factor * fft.dct(along_y, type=1, axis=0)
     if mirrored:
         return np.asarray(spectrum[:-1] if response.displacement.sign_x > 0 else spectrum[1:])
@@ -188,7 +188,7 @@ MIN_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over t
 
 
 class ColumnsOperator:
-    """Displacements of the top of one part of a body, averaged over the width of each cell."""
+    """Displacements of the top of one term of a body, averaged over the width of each cell."""
 
     def __init__(self, extent: Extent, grid: Grid, kernels: Mapping[Response, FloatArray]) -> None:
         self.extent, self.grid, self._kernels = extent, grid, kernels
@@ -198,7 +198,7 @@ class ColumnsOperator:
     def of(
         cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> ColumnsOperator:
-        """Operator of a part of a body made of `material`, for pairs of displacement and load."""
+        """Operator of a term of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_distance(extent)
         columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=grid.cells_y, extent=extent, reference=reference)
         kernels = {
@@ -266,8 +266,8 @@ class ColumnsOperator:
 def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
     """Real matrices (wavenumber, cell, cell) times a contiguous spectrum (wavenumber, cell)."""
     # One product for real and imaginary parts reads the matrices once.
-    parts = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
-    return (matrices @ parts).view(np.complex128)[..., 0]
+    components = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
+    return (matrices @ components).view(np.complex128)[..., 0]
 
 
 def _invert_matrix(matrix: FloatArray) -> FloatArray:
@@ -285,7 +285,7 @@ def _invert_matrix(matrix: FloatArray) -> FloatArray:
 
 DIRECTIONS = {"x": Load.ALONG_X, "y": Load.ALONG_Y, "z": Load.NORMAL}  # of a displacement, by axis
 NORMAL = (Load.NORMAL,)  # directions of a contact without friction
-RESOLUTION = Resolution()  # quadrature settings of the free ends' part
+RESOLUTION = Resolution()  # quadrature settings of the free ends
 
 
 class SurfaceOperator:
@@ -306,13 +306,13 @@ class SurfaceOperator:
         """Build the operator from loads, the pressure first, to displacements in some directions."""
         # Between ends the cells begin at ``x = 0`` and span the body.
         body.check_span(grid)
-        part_operator = ColumnsOperator.of if grid.observes_means else UniformOperator
+        term_operator = ColumnsOperator.of if grid.observes_means else UniformOperator
         responses = tuple(Response(direction, load) for direction in directions for load in loads)
         operators = []
         with one_blas_thread():
             for term in body.terms:
                 ends = end_kernel_of(term, body.material, grid, responses, resolution)
-                operators.append((term.weight, part_operator(body.material, term.extent, grid, responses, ends)))
+                operators.append((term.weight, term_operator(body.material, term.extent, grid, responses, ends)))
         return cls(body, operators)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:

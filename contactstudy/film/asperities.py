@@ -12,8 +12,8 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.film.reynolds import Law
 
-NODE_COUNT = 64  # Gauss points of the integral over the asperities. Accuracy
-MAX_HEIGHT = 6.0  # Highest asperity over the composite rms roughness; 1e-9 of the asperities are higher. Accuracy
+NODE_COUNT = 64  # Gauss points of the integral over the asperities. Accuracy.
+MAX_HEIGHT = 6.0  # Highest asperity over the composite rms roughness; 1e-9 of the asperities are higher. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ class Asperities:
     def _law(self, distance: FloatArray, modulus: float) -> Law:
         if self.pressure is not None:
             step = 1e-4 * self.rms
-            pressures = [np.asarray(self.pressure(distance + side * step), dtype=np.float64) for side in (-1, 0, 1)]
+            pressures = [np.asarray(self.pressure(distance + offset * step), dtype=np.float64) for offset in (-1, 0, 1)]
             return Law(pressures[1], (pressures[2] - pressures[0]) / (2 * step))
         factor = 16 * np.sqrt(2) * np.pi / 15 * self.density**2 * np.sqrt(self.sharpness) * modulus  # eq. (412)
         ratio = distance / self.rms

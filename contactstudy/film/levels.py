@@ -30,7 +30,7 @@ from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 from contactstudy.kernels.load import Load
 
 # Shortest and longest distances of `FilmResolution` over the inlet length. A longer inlet thickens the film of a line
-# contact by 0.1 % at M = 20, by 0.2 % at M = 1000; an outlet of 0.25 suffices. Accuracy
+# contact by 0.1 % at M = 20, by 0.2 % at M = 1000; an outlet of 0.25 suffices. Accuracy.
 WINDOW_RANGES = {"inlet": (25.0, 100.0), "outlet": (1.0, 100.0)}
 
 
@@ -161,15 +161,16 @@ class FilmCase:
     @cached_property
     def contact_ends(self) -> tuple[float, float]:
         """First and last loaded x of the dry contact, over the half-width."""
-        edges, loaded = self.dry_contact.shape.grid.x_edges, np.flatnonzero(self.dry_contact.pressure.any(axis=1))
-        return edges[loaded[0]] / self.half_width, edges[loaded[-1] + 1] / self.half_width
+        edges = self.dry_contact.shape.grid.x_edges / self.half_width
+        loaded_columns = np.flatnonzero(self.dry_contact.pressure.any(axis=1))
+        return edges[loaded_columns[0]], edges[loaded_columns[-1] + 1]
 
     @cached_property
     def contact_half_width(self) -> float:
         """Largest half-width of the dry contact over the Hertz half-width."""
         grid = self.dry_contact.shape.grid
-        loaded = self.dry_contact.pressure.any(axis=0)
-        return float(np.abs(grid.y[loaded]).max() + 0.5 * grid.dy) / self.half_width
+        is_loaded = self.dry_contact.pressure.any(axis=0)
+        return float(np.abs(grid.y[is_loaded]).max() + 0.5 * grid.dy) / self.half_width
 
     @property
     def tilt_centre(self) -> float:
@@ -259,11 +260,11 @@ class MergedCells:
         edges = [0]
         while edges[-1] < cell_count:
             first_cell, width = edges[-1], 1
-            previous = edges[-1] - edges[-2] if len(edges) > 1 else 1 << 30
+            previous_width = edges[-1] - edges[-2] if len(edges) > 1 else 1 << 30
             while (
                 first_cell % (2 * width) == 0
                 and first_cell + 2 * width <= cell_count
-                and 2 * width <= min(2 * previous, max_count(first_cell, first_cell + 2 * width))
+                and 2 * width <= min(2 * previous_width, max_count(first_cell, first_cell + 2 * width))
             ):
                 width *= 2
             edges.append(first_cell + width)
@@ -315,7 +316,7 @@ class Level(NamedTuple):
     inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
     def refined(self, direction: str, film: FilmCase, minima: Iterable[tuple[float, float]]) -> Level:
-        """Next level in a direction, of a film with the least films of both sides at positions, over lengths."""
+        """Next level in a direction; `minima` are positions and lengths of the least films of both halves."""
         if direction == "cells":
             return self._replace(cells=self.cells + 1)
         # Each level halves the columns at the least films at least, even if the lengths grow.
@@ -351,12 +352,12 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     start, stop = (end / film.half_width for end in film.case.contact_range)
     min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
-    narrow = [(end, min_dx) for end in film.contact_ends]
-    narrow += [(closure, max(min_dx, column_scale * width)) for closure, width in level.closures]
+    narrow_columns = [(end, min_dx) for end in film.contact_ends]
+    narrow_columns += [(closure, max(min_dx, column_scale * width)) for closure, width in level.closures]
     max_width = min(resolution.widest_column, 0.2 * (stop - start))
 
     def column_width(x: float) -> float:
-        widths = (width + growth * max(abs(x - position) - 2 * width, 0.0) for position, width in narrow)
+        widths = (width + growth * max(abs(x - position) - 2 * width, 0.0) for position, width in narrow_columns)
         return float(min(max_width, *widths))
 
     x_edges = graded_edges(start, stop, column_width)
@@ -371,8 +372,8 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     cell_count = min(cell_count, resolution.most_cells)
     step = (y_stop - y_start) / cell_count
 
-    def max_cell_count(begin: float, end: float) -> float:
-        y = y_start + 0.5 * (begin + end) * step
+    def max_cell_count(first_cell: float, stop_cell: float) -> float:
+        y = y_start + 0.5 * (first_cell + stop_cell) * step
         distance = max(0.0, min(abs(y + 1), abs(y - 1), abs(y - half_width), abs(y + half_width)) - delta)
         inner_width = min(resolution.inner, resolution.inner_inlet * delta) * scale
         max_width = inner_width if abs(y) < half_width else 0.25 + 0.1 * (abs(y) - half_width)
@@ -403,7 +404,7 @@ def film_on_level(
     # The tilt refers to the reference lines, here under the dry contact, the height to the bodies far away.
     gap = shape.gap.values - RigidMotion(0.0, film.dry_contact.motions.total.tilt).height(grid.x - film.tilt_centre)
     resultants = shape.prescribed.resultants(grid)
-    rough = film.asperities
+    asperities = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
@@ -413,8 +414,8 @@ def film_on_level(
         load=film.case.normal_load / (p0 * a**2),
         lever=None if resultants.lever is None else resultants.lever[columns, 0],
         central_film=film.central_film / height_scale,
-        asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
-        mean_height=None if rough is None else rough.mean_height(height_scale),
+        asperities=None if asperities is None else asperities.scaled_law(height_scale, p0, film.case.modulus),
+        mean_height=None if asperities is None else asperities.mean_height(height_scale),
     )
 
     def start_from_dry_contact() -> FilmState:
@@ -461,7 +462,7 @@ def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSet
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
-    """First guess: film of other cells, interpolated between the cells' centres."""
+    """Return a guess: the film of other cells, interpolated between the cells' centres."""
     start_cells, cells = start.problem.cells, problem.cells
     state = start.solution.state
     # The film rises by powers of ten from column to column at the contact's ends: its logarithm is interpolated.
@@ -474,7 +475,7 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
-    """First guess: film of another speed or lubricant, scaled by the ratio of the formula's central films."""
+    """Return a guess: the film of another speed or lubricant, scaled by the central films of Moes' formula."""
     sign = -1 if result["entrainment_speed"] < 0 else 1
     fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
     x, y = (fields[axis].values / film.half_width for axis in "xy")
@@ -485,13 +486,13 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
     distance = np.exp(log_film) / film.height_scale
     film_ratio, central_film = film.film_ratio(result), float(result["central_film"]) / film.height_scale
     distance = np.where(distance < central_film, film_ratio * distance, distance + (film_ratio - 1) * central_film)
-    loaded = pressure.ravel() > 0
+    is_loaded = pressure.ravel() > 0
     rigid_heights = (distance - problem.gap - problem.displace(pressure)).ravel()
-    motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid_heights[loaded])[0], dtype=np.float64)
+    motion = np.asarray(np.linalg.lstsq(problem.motions[:, is_loaded].T, rigid_heights[is_loaded])[0], dtype=np.float64)
     return problem.create_state(pressure, motion, distance)
 
 
 def _interpolate_field(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
     """Values at the centres of cells by monotone cubic polynomials, constant outside the given positions."""
-    along_y = scipy.interpolate.PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
-    return np.asarray(scipy.interpolate.PchipInterpolator(x, along_y, axis=0)(np.clip(cells.x, x[0], x[-1])))
+    column_values = scipy.interpolate.PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
+    return np.asarray(scipy.interpolate.PchipInterpolator(x, column_values, axis=0)(np.clip(cells.x, x[0], x[-1])))

@@ -13,7 +13,7 @@ from contactstudy.film.newton import SETTINGS, FilmProblem, FilmSolution, FilmSt
 from contactstudy.film.reynolds import FilmCells, Fluid, graded_edges
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
-COARSEST_FROM_DRY = 0.35  # Narrowest cells that start from the dry contact, as `finest` of `solve_line`. Speed
+COARSEST_FROM_DRY = 0.35  # Narrowest cells that start from the dry contact, as `finest` of `solve_line`. Speed.
 
 
 class LineFilm(NamedTuple):
@@ -42,13 +42,13 @@ def solve_line(
     *,
     finest: float = 0.2,  # narrowest cells over the length on which the film forms
     inlet: float | None = None,  # distance of the inlet from the middle over a; default: without influence
-    oil: Lubricant = BARUS,  # its viscosity has no influence, nor has the coefficient of Barus' law
+    oil: Lubricant = BARUS,  # viscosity and Barus' coefficient have no influence
     max_pressure: float | None = None,  # p0, Pa, for laws other than Barus', whose coefficient then follows from L
 ) -> LineFilm:
     """Solve for the film of a line contact of Moes' numbers M and L from the film on cells twice as wide."""
-    start = None
+    coarse = None
     if finest < COARSEST_FROM_DRY:
-        start = solve_line(load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure)
+        coarse = solve_line(load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure)
     alpha_p0 = lubricant * np.sqrt(load / (2 * np.pi))  # alpha p0
     p0 = alpha_p0 / oil.pressure_viscosity if max_pressure is None else max_pressure
     if max_pressure is not None:
@@ -84,9 +84,9 @@ def solve_line(
         return problem.create_state(hertz_pressure, motion, np.maximum(deformed_gap + motion[0], central_film))
 
     guess = None
-    if start is not None:
-        pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
-        guess = problem.create_state(pressure, start.solution.state.motion, film_start)
+    if coarse is not None:
+        pressure, start_film = (np.interp(y, coarse.y, values)[None] for values in (coarse.pressure, coarse.film))
+        guess = problem.create_state(pressure, coarse.solution.state.motion, start_film)
     solution = solve_newton(problem, guess, SETTINGS, start_from_hertz_pressure)
     height = solution.film[0]
     thinnest_cell = int(height.argmin())

@@ -18,7 +18,7 @@ from contactstudy.film.reynolds import FilmCells, Fluid, Law, scale_columns, sca
 
 LOGGER = logging.getLogger(__name__)
 
-INVERSE_STEPS = 8  # Steps from film to distance of rough surfaces; the next Newton step removes the remainder. Speed
+INVERSE_STEPS = 8  # Steps from film to distance of rough surfaces; the next Newton step removes the remainder. Speed.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class FilmSettings:
     linear_steps : int
         Bound on the steps of one linear system. Speed.
     elimination_ratio : float
-        Residual over the former one below which the preconditioner of the former step serves again. Speed.
+        Residual over the previous residual below which the preconditioner is reused. Speed.
     max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
     max_pressure_change : float
@@ -152,8 +152,8 @@ class _LinearisedEquations(NamedTuple):
 
     outflow: FloatArray  # (cell): net outflow per width
     residual: FloatArray  # (cell + motion): residuals over the cells' film, and residuals of load and moment
-    by_pressure: sparse.csr_array  # (cell, cell): derivatives of the cells' residuals at a fixed distance
-    by_distance: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
+    pressure_jacobian: sparse.csr_array  # (cell, cell): derivatives of the cells' residuals at a fixed distance
+    distance_jacobian: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
     cavitated: BoolArray  # (cell): cells with a broken film
     fluid_pressure: FloatArray
     asperity_pressure: FloatArray
@@ -163,7 +163,7 @@ class _LinearisedEquations(NamedTuple):
 def solve_newton(
     problem: FilmProblem, guess: FilmState | None, settings: FilmSettings, make_start: Callable[[], FilmState]
 ) -> FilmSolution:
-    """Solve for the film from a guess; without one, or if its iteration fails, by pseudo-time steps from a start."""
+    """Solve for the film from a guess; without a guess, or if it fails, by pseudo-time steps from `make_start`."""
     iteration = _Iteration(problem, settings)
     if guess is not None:
         try:
@@ -208,23 +208,24 @@ class _Iteration:
         no_pressure = Law(np.zeros(cells.shape), np.zeros(cells.shape))
         asperities = no_pressure if problem.asperities is None else problem.asperities(distance)
         fluid_pressure = state.pressure - asperities.value
-        outflow, by_pressure, by_distance = cells.flow(problem.fluid, fluid_pressure, film)
+        outflow, pressure_jacobian, distance_jacobian = cells.flow(problem.fluid, fluid_pressure, film)
         if mass is not None:
             density = problem.fluid.density(fluid_pressure.ravel())
             lengths = np.tile(cells.lengths, cells.shape[0]) / step
             outflow = outflow + lengths * (density.value * film.value.ravel() - mass)
-            by_pressure = by_pressure + sparse.diags_array(lengths * density.slope * film.value.ravel())
-            by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
+            pressure_jacobian = pressure_jacobian + sparse.diags_array(lengths * density.slope * film.value.ravel())
+            distance_jacobian = distance_jacobian + sparse.diags_array(lengths * density.value * film.slope.ravel())
         # The fluid pressure is the total pressure minus the pressure of the asperities.
         if problem.asperities is not None:
-            by_distance = by_distance - scale_columns(by_pressure, asperities.slope.ravel())
-        elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
-        diagonal = np.abs(by_pressure.diagonal() + elastic)
+            distance_jacobian = distance_jacobian - scale_columns(pressure_jacobian, asperities.slope.ravel())
+        elastic = _elastic_diagonal(problem.column_stiffness, distance_jacobian)
+        diagonal = np.abs(pressure_jacobian.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / diagonal <= 0
         # The residual is divided by the film of the cell: a norm of pressures would neglect the far inlet.
-        row_factors = np.where(cavitated, 0.0, 1 / film.value.ravel())
-        by_pressure = scale_rows(row_factors, by_pressure) + sparse.diags_array(cavitated.astype(np.float64))
-        by_distance = scale_rows(row_factors, by_distance) - sparse.diags_array(cavitated * asperities.slope.ravel())
+        factors = np.where(cavitated, 0.0, 1 / film.value.ravel())
+        pressure_jacobian = scale_rows(factors, pressure_jacobian) + sparse.diags_array(cavitated.astype(np.float64))
+        cavity_slopes = cavitated * asperities.slope.ravel()
+        distance_jacobian = scale_rows(factors, distance_jacobian) - sparse.diags_array(cavity_slopes)
         # The moment about the load's position is zero.
         prescribed = np.array([problem.load, 0.0][: len(problem.motions)])
         resultant_errors = problem.resultants @ state.pressure.ravel() - prescribed
@@ -232,8 +233,8 @@ class _Iteration:
         return _LinearisedEquations(
             outflow=outflow,
             residual=np.concatenate([residual, resultant_errors / problem.load]),
-            by_pressure=sparse.csr_array(by_pressure),
-            by_distance=sparse.csr_array(by_distance),
+            pressure_jacobian=sparse.csr_array(pressure_jacobian),
+            distance_jacobian=sparse.csr_array(distance_jacobian),
             cavitated=cavitated,
             fluid_pressure=fluid_pressure,
             asperity_pressure=asperities.value,
@@ -246,16 +247,16 @@ class _Iteration:
         max_steps = settings.newton_steps if mass is not None else 3 * settings.newton_steps
         elimination, norm, min_film_ratio = None, np.inf, np.inf
         for _ in range(max_steps):
-            linearised = self.linearise(state, step, mass)
-            if not np.isfinite(linearised.residual).all():
+            equations = self.linearise(state, step, mass)
+            if not np.isfinite(equations.residual).all():
                 break
-            solution = self.certify(state, linearised)
+            solution = self.certify(state, equations)
             if mass is None and solution.converged:
                 return solution
-            former_norm, norm = norm, float(np.linalg.norm(linearised.residual))
-            if elimination is None or norm > settings.elimination_ratio * former_norm:
-                elimination = _ColumnElimination.of(linearised, self.problem)
-            change = self.solve_linear(linearised, elimination, state.mismatch.ravel())
+            previous_norm, norm = norm, float(np.linalg.norm(equations.residual))
+            if elimination is None or norm > settings.elimination_ratio * previous_norm:
+                elimination = _ColumnElimination.of(equations, self.problem)
+            change = self.solve_linear(equations, elimination, state.mismatch.ravel())
             state, step_fraction, pressure_change = self.apply_step(state, change)
             if mass is not None and step_fraction == 1 and pressure_change < 1e-3:
                 return self.certify(state, self.linearise(state, step, mass))
@@ -269,23 +270,23 @@ class _Iteration:
             position = float(self.problem.cells.x[row]), float(self.problem.cells.y[cell])
         raise StepFailedError(f"no convergence within {max_steps} Newton steps", position)
 
-    def certify(self, state: FilmState, linearised: _LinearisedEquations) -> FilmSolution:
+    def certify(self, state: FilmState, equations: _LinearisedEquations) -> FilmSolution:
         """Return the solution: a state and its certificate."""
-        central_film, cavitated = self.problem.central_film, linearised.cavitated
+        central_film, cavitated = self.problem.central_film, equations.cavitated
         # A cavitated cell may lose mass; a full cell loses none.
-        residual = float(np.abs(linearised.outflow[~cavitated]).max(initial=0.0)) / central_film
+        residual = float(np.abs(equations.outflow[~cavitated]).max(initial=0.0)) / central_film
         # Flows between full cells cancel: the sum contains inlet, exit and both ends.
         widths = self.problem.cells.widths
-        balance = (widths @ np.where(cavitated, 0.0, linearised.outflow).reshape(widths.size, -1)).sum()
-        inflow = float(np.maximum(-linearised.outflow[cavitated], 0.0).max(initial=0.0)) / central_film
-        cavity_pressure = float(np.abs(linearised.fluid_pressure.ravel()[cavitated]).max(initial=0.0))
-        load_error = float(np.abs(linearised.residual[cavitated.size :]).max())
+        balance = (widths @ np.where(cavitated, 0.0, equations.outflow).reshape(widths.size, -1)).sum()
+        inflow = float(np.maximum(-equations.outflow[cavitated], 0.0).max(initial=0.0)) / central_film
+        cavity_pressure = float(np.abs(equations.fluid_pressure.ravel()[cavitated]).max(initial=0.0))
+        load_error = float(np.abs(equations.residual[cavitated.size :]).max())
         mismatch = float(np.abs(state.mismatch).max()) / central_film
         return FilmSolution(
             state=state,
-            fluid_pressure=np.maximum(linearised.fluid_pressure, 0.0),
-            asperity_pressure=linearised.asperity_pressure,
-            film=linearised.film,
+            fluid_pressure=np.maximum(equations.fluid_pressure, 0.0),
+            asperity_pressure=equations.asperity_pressure,
+            film=equations.film,
             residual=residual,
             balance_error=abs(float(balance)) / (central_film * float(widths.sum())),
             load_error=load_error,
@@ -322,14 +323,15 @@ class _Iteration:
         return next_state, step_fraction, max_change
 
     def solve_linear(
-        self, linearised: _LinearisedEquations, elimination: _ColumnElimination, mismatch: FloatArray
+        self, equations: _LinearisedEquations, elimination: _ColumnElimination, mismatch: FloatArray
     ) -> FloatArray:
         """Change of pressure and rigid motion, by GMRES with elimination of columns as preconditioner, eq. (405)."""
         problem, settings = self.problem, self.settings
         cell_count = problem.gap.size
         motions, resultants = problem.motions, problem.resultants / problem.load
-        by_motion = linearised.by_distance @ motions.T
-        inverse_motions = np.stack([elimination.solve(column) for column in by_motion.T], axis=1)
+        pressure_jacobian, distance_jacobian = equations.pressure_jacobian, equations.distance_jacobian
+        motion_jacobian = distance_jacobian @ motions.T
+        inverse_motions = np.stack([elimination.solve(column) for column in motion_jacobian.T], axis=1)
         schur = np.linalg.inv(resultants @ inverse_motions)
 
         def precondition(outflows: FloatArray, load: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -339,16 +341,16 @@ class _Iteration:
 
         def apply(pressure: FloatArray, motion: FloatArray) -> FloatArray:
             displacement = problem.displace(pressure.reshape(problem.gap.shape)).ravel()
-            outflows = linearised.by_pressure @ pressure + linearised.by_distance @ displacement + by_motion @ motion
+            outflows = pressure_jacobian @ pressure + distance_jacobian @ displacement + motion_jacobian @ motion
             return np.asarray(outflows)
 
         def count_step(_: object) -> None:
             self.linear_steps += 1
 
         # The preconditioner satisfies load and moment: the iteration is for the outflows alone.
-        load_change, no_load = -linearised.residual[cell_count:], np.zeros(len(motions))
-        loaded = precondition(np.zeros(cell_count), load_change)
-        outflow_change = linearised.by_distance @ mismatch - linearised.residual[:cell_count] - apply(*loaded)
+        load_change, no_load = -equations.residual[cell_count:], np.zeros(len(motions))
+        load_correction = precondition(np.zeros(cell_count), load_change)
+        outflow_change = distance_jacobian @ mismatch - equations.residual[:cell_count] - apply(*load_correction)
         operator = LinearOperator(
             (cell_count, cell_count), matvec=lambda outflows: apply(*precondition(outflows, no_load)), dtype=np.float64
         )
@@ -372,11 +374,11 @@ def _select_column_entries(matrix: sparse.csr_array, cell_count: int) -> sparse.
     return sparse.csr_array((entries.data[is_inside], (row, column_cell)), (matrix.shape[0], cell_count))
 
 
-def _elastic_diagonal(stiffness: SingleArray, by_distance: sparse.csr_array) -> FloatArray:
+def _elastic_diagonal(stiffness: SingleArray, distance_jacobian: sparse.csr_array) -> FloatArray:
     """Diagonal (cell) of the product of the derivative by the distance and the columns' stiffness."""
-    entries = _select_column_entries(by_distance, cell_count := stiffness.shape[1]).tocoo()
+    entries = _select_column_entries(distance_jacobian, cell_count := stiffness.shape[1]).tocoo()
     products = entries.data * stiffness[entries.row // cell_count, entries.col, entries.row % cell_count]
-    return np.asarray(np.bincount(entries.row, products, minlength=by_distance.shape[0]), dtype=np.float64)
+    return np.asarray(np.bincount(entries.row, products, minlength=distance_jacobian.shape[0]), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -388,23 +390,22 @@ class _ColumnElimination:
     upper: SingleArray
 
     @classmethod
-    def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
+    def of(cls, equations: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
         """Return the elimination of the linearised equations."""
         columns, cell_count = problem.cells.shape
-        before, after = np.zeros((2, columns, cell_count), dtype=np.float32)
-        before[1:] = linearised.by_pressure.diagonal(-cell_count).reshape(-1, cell_count)
-        after[:-1] = linearised.by_pressure.diagonal(cell_count).reshape(-1, cell_count)
-        by_distance, by_pressure = (
-            _select_column_entries(matrix, cell_count) for matrix in (linearised.by_distance, linearised.by_pressure)
-        )
+        lower, upper = np.zeros((2, columns, cell_count), dtype=np.float32)
+        lower[1:] = equations.pressure_jacobian.diagonal(-cell_count).reshape(-1, cell_count)
+        upper[:-1] = equations.pressure_jacobian.diagonal(cell_count).reshape(-1, cell_count)
+        distance_jacobian = _select_column_entries(equations.distance_jacobian, cell_count)
+        pressure_jacobian = _select_column_entries(equations.pressure_jacobian, cell_count)
         inverses = np.empty((columns, cell_count, cell_count), dtype=np.float32)
         for column, stiffness in enumerate(problem.column_stiffness):
             cells = slice(column * cell_count, (column + 1) * cell_count)
-            matrix = by_distance[cells] @ stiffness + by_pressure[cells].toarray()
+            matrix = distance_jacobian[cells] @ stiffness + pressure_jacobian[cells].toarray()
             if column:
-                matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]
+                matrix -= lower[column][:, None] * inverses[column - 1] * upper[column - 1]
             inverses[column] = linalg.inv(matrix, overwrite_a=True, check_finite=False)
-        return cls(inverses, before, after)
+        return cls(inverses, lower, upper)
 
     def solve(self, residual: FloatArray) -> FloatArray:
         """Pressures that remove a residual: array (cell)."""

@@ -18,8 +18,8 @@ from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 
-FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005  # Pressures of the fluidity's table, ratio of successive steps. Accuracy
-FACE_RANGE = (0.2, 2.0)  # Range of the film on a face over the film upstream, since parabolas overshoot. Accuracy
+FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005  # Fluidity's table: pressures, ratio of successive steps. Accuracy.
+FACE_RANGE = (0.2, 2.0)  # Range of the film on a face over the film upstream, since parabolas overshoot. Accuracy.
 
 
 class Law(NamedTuple):
@@ -61,22 +61,22 @@ class Flow(NamedTuple):
     """Flow through faces, or net outflow of cells per width along x, and its derivatives."""
 
     flow: FloatArray
-    by_pressure: sparse.csr_array  # (face or cell, cell): derivatives at a fixed film
-    by_film: sparse.csr_array  # derivatives at a fixed pressure
+    pressure_jacobian: sparse.csr_array  # (face or cell, cell): derivatives at a fixed film
+    film_jacobian: sparse.csr_array  # derivatives at a fixed pressure
 
 
 def scale_rows(factors: FloatArray, matrix: sparse.csr_array) -> sparse.csr_array:
     """Product of a diagonal and a matrix, several times as fast as the product of two sparse matrices."""
-    scaled = matrix.copy()
-    scaled.data *= np.repeat(factors, np.diff(matrix.indptr))
-    return scaled
+    product = matrix.copy()
+    product.data *= np.repeat(factors, np.diff(matrix.indptr))
+    return product
 
 
 def scale_columns(matrix: sparse.csr_array, factors: FloatArray) -> sparse.csr_array:
     """Product of a matrix and a diagonal."""
-    scaled = matrix.copy()
-    scaled.data *= factors[matrix.indices]
-    return scaled
+    product = matrix.copy()
+    product.data *= factors[matrix.indices]
+    return product
 
 
 def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]) -> FloatArray:
@@ -93,9 +93,9 @@ def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]
         points.append(points[-1] + 0.1 * cell_width(points[-1]))
     positions = np.minimum(np.array(points), stop)
     midpoints = 0.5 * (positions[1:] + positions[:-1])
-    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
-    cell_count = max(2, int(np.ceil(measure[-1] - 1e-9)))
-    edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
+    cell_numbers = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
+    cell_count = max(2, int(np.ceil(cell_numbers[-1] - 1e-9)))
+    edges = np.interp(np.linspace(0.0, cell_numbers[-1], cell_count + 1), cell_numbers, positions)
     edges[0], edges[-1] = start, stop
     return np.asarray(edges)
 
@@ -176,33 +176,34 @@ class FilmCells:
         height, pressure = film.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
-        entrained = Flow(
+        couette_flow = Flow(
             upwind @ (density.value * height),
             scale_columns(upwind, density.slope * height),
             scale_columns(upwind, density.value),
         )
-        driven_y, driven_x = (
+        poiseuille_y, poiseuille_x = (
             faces.conduct_flow(fluid.flow_number, reduced, height) for faces in (self.faces_y, self.faces_x)
         )
-        return Flow(*(couette + driven for couette, driven in zip(entrained, driven_y, strict=True))), driven_x
+        flows_y = zip(couette_flow, poiseuille_y, strict=True)
+        return Flow(*(couette + poiseuille for couette, poiseuille in flows_y)), poiseuille_x
 
     def cell_flows(
         self, fluid: Fluid, pressure: FloatArray, film: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Flows along x and y at the centres (x, y) per width, and those out of both end faces."""
         columns, cell_count = self.shape
-        through_y, through_x = (flow.flow for flow in self.face_flows(fluid, pressure, film))
-        through_y, through_x = through_y.reshape(columns, -1), through_x.reshape(-1, cell_count)
-        out_of_ends = through_x[[0, -1]] @ self.lengths * [-1.0, 1.0]
-        return 0.5 * (through_x[1:] + through_x[:-1]), 0.5 * (through_y[:, 1:] + through_y[:, :-1]), out_of_ends
+        flows_y, flows_x = (flow.flow for flow in self.face_flows(fluid, pressure, film))
+        flows_y, flows_x = flows_y.reshape(columns, -1), flows_x.reshape(-1, cell_count)
+        end_flows = flows_x[[0, -1]] @ self.lengths * [-1.0, 1.0]
+        return 0.5 * (flows_x[1:] + flows_x[:-1]), 0.5 * (flows_y[:, 1:] + flows_y[:, :-1]), end_flows
 
     def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
         """Net outflow of each cell, eq. (401), from fluid pressure and mean height (x, y) by the surfaces' distance."""
-        outflow, by_pressure, by_film = (
+        outflow, pressure_jacobian, film_jacobian = (
             self.faces_y.outflow @ flow_y + self.faces_x.outflow @ flow_x
             for flow_y, flow_x in zip(*self.face_flows(fluid, pressure, film.value), strict=True)
         )
-        return Flow(outflow, by_pressure, scale_columns(by_film, film.slope.ravel()))
+        return Flow(outflow, pressure_jacobian, scale_columns(film_jacobian, film.slope.ravel()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,12 +221,12 @@ class Faces:
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = -2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value
-        by_pressure = scale_columns(scale_rows(factor, self.gradient), reduced.slope)
-        by_before, by_after = (
+        pressure_jacobian = scale_columns(scale_rows(factor, self.gradient), reduced.slope)
+        upstream_jacobian, downstream_jacobian = (
             scale_rows(factor * slopes * (2 / film - 1 / (upstream + downstream)), selection)
             for film, selection in ((upstream, self.upstream), (downstream, self.downstream))
         )
-        return Flow(factor * slopes, by_pressure, by_before + by_after)
+        return Flow(factor * slopes, pressure_jacobian, upstream_jacobian + downstream_jacobian)
 
 
 def _difference_matrices(edges: FloatArray, centres: FloatArray, *, closed: bool) -> tuple[sparse.sparray, ...]:

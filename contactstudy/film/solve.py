@@ -33,13 +33,13 @@ from contactstudy.film.levels import (
 from contactstudy.film.newton import SETTINGS, FilmSettings, FilmSolution, StepFailedError
 from contactstudy.threads import one_blas_thread
 
-ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach
+ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach. Limit.
 DIRECTIONS = ("cells", "columns")  # of refinement
-CELLS_SAFETY = 1.5  # Stated error along y over that of cells of second order. Accuracy
-ORDER_RATIOS = 0.25, 0.5  # Ratios of successive changes by columns half as wide, of second and of first order. Accuracy
-NEXT_RATIO = 0.5  # Ratio of the errors on two levels of the same direction, at most. Accuracy
-MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy
-VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics
+CELLS_SAFETY = 1.5  # Stated error along y over that of cells of second order. Accuracy.
+ORDER_RATIOS = 0.25, 0.5  # Ratio of successive changes as columns halve: order 2, order 1. Accuracy.
+NEXT_RATIO = 0.5  # Largest ratio of the errors on two levels of the same direction. Accuracy.
+MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy.
+VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics.
 
 
 def solve_film(
@@ -116,25 +116,27 @@ def solve_film(
     """
     film = create_film_case(case, asperities, inlet, resolution)
     warn_of_magnitudes(case)
-    limit = checks.positive("accuracy", accuracy)
-    if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
-        raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
+    max_error = checks.positive("accuracy", accuracy)
+    low, high = ACCURACIES
+    if not low <= max_error <= high:
+        raise InvalidInputError("accuracy", max_error, f"from {low:g} to {high:g} of the central film")
     start_time = time.perf_counter()
     if start is not None:
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
     try:
         with one_blas_thread():
-            refined = _refine(film, limit, settings, start)
-            level_film = continue_solution(film, refined.level_film, settings)
+            refined_film = _refine(film, max_error, settings, start)
+            level_film = continue_solution(film, refined_film.level_film, settings)
     except StepFailedError as error:
         raise _create_film_error(error, film.half_width) from None
-    refined = refined._replace(level_film=level_film, solutions=[*refined.solutions, level_film.solution])
-    result = _label_film(film, refined)
+    solutions = [*refined_film.solutions, level_film.solution]
+    refined_film = refined_film._replace(level_film=level_film, solutions=solutions)
+    result = _label_film(film, refined_film)
     seconds = time.perf_counter() - start_time
     relative_error = max(float(result[f"{name}_error"]) for name in FILM_NAMES) / float(result["central_film"])
-    if relative_error > limit:
+    if relative_error > max_error:
         warnings.warn(
-            f"the films have converged to {relative_error:.2g} of the central film, not to accuracy = {limit:g}: "
+            f"the films have converged to {relative_error:.2g} of the central film, not to accuracy = {max_error:g}: "
             "allow more levels, or more error",
             ConvergenceWarning,
             stacklevel=2,
@@ -142,9 +144,9 @@ def solve_film(
     _warn_of_viscosity(film, level_film)
     described = describe(result, "lubricated contact of a roller with an elastic body")
     labelled = without_error(described, "slice_film", "approach", "tilt")
-    errors = {name: values.tolist() for name, values in refined.direction_errors.items()}
+    errors = {name: values.tolist() for name, values in refined_film.direction_errors.items()}
     cells = {"level": level_film.level._asdict(), "direction_errors": errors}
-    recorded_arguments = {"accuracy": limit, **film.settings, **cells}
+    recorded_arguments = {"accuracy": max_error, **film.settings, **cells}
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
 
@@ -217,43 +219,43 @@ class _RefinedFilm(NamedTuple):
 
 def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
-    if start is not None and (continued := _continue_film(film, accuracy, settings, start)) is not None:
-        return continued
-    level, refined, former, direction = film.coarsest_level, None, np.zeros(len(FILM_NAMES)), ""
+    if start is not None and (continued_film := _continue_film(film, accuracy, settings, start)) is not None:
+        return continued_film
+    level, refined_film, previous_thicknesses, direction = film.coarsest_level, None, np.zeros(len(FILM_NAMES)), ""
     changes: dict[str, list[FloatArray]] = {name: [] for name in ("", *DIRECTIONS)}
     while True:
         try:
-            level_film = film_on_level(film, level, settings, refined.level_film if refined else start)
+            level_film = film_on_level(film, level, settings, refined_film.level_film if refined_film else start)
         except StepFailedError:
-            if refined is None or np.isinf([*refined.direction_errors.values()]).any():
+            if refined_film is None or np.isinf([*refined_film.direction_errors.values()]).any():
                 raise
-            return refined
+            return refined_film
         films = compute_films(film, level_film)
         thicknesses = films.thicknesses
-        changes[direction].append(thicknesses - former)
+        changes[direction].append(thicknesses - previous_thicknesses)
         direction_errors = {name: _estimate_errors(name, changes[name]) / thicknesses for name in DIRECTIONS}
-        solutions = [*(refined.solutions if refined else []), level_film.solution]
-        refined = _RefinedFilm(level_film, direction_errors, solutions)
+        solutions = [*(refined_film.solutions if refined_film else []), level_film.solution]
+        refined_film = _RefinedFilm(level_film, direction_errors, solutions)
         directions = [name for name in DIRECTIONS if getattr(level, name) < film.resolution.levels - 1]
         error = _combine_errors(direction_errors, thicknesses).max() / films.central_film
         if error <= accuracy or not directions:
-            return refined
+            return refined_film
         direction = max(directions, key=lambda name: float((direction_errors[name] * thicknesses).max()))
         level = level.refined(direction, film, (films.first[1:], films.last[1:]))
-        former = thicknesses
+        previous_thicknesses = thicknesses
 
 
 def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
     """Errors of the films from their latest two changes by refinement in a direction; infinite before."""
     if len(changes) < 2:
         return np.full(len(FILM_NAMES), np.inf)
-    former, latest = np.abs(changes[-2:])
+    previous, latest = np.abs(changes[-2:])
     if direction == "cells":
         # Two refinements halve every cell along y, one refinement halves some, since cells merge in powers of two.
-        return np.asarray(CELLS_SAFETY / 3 * (former + latest))
-    ratio = np.clip(latest / np.maximum(former, 1e-300), *ORDER_RATIOS)
+        return np.asarray(CELLS_SAFETY / 3 * (previous + latest))
+    ratio = np.clip(latest / np.maximum(previous, 1e-300), *ORDER_RATIOS)
     # The latest change may vanish by chance.
-    return np.asarray(np.maximum(latest, ORDER_RATIOS[0] * former) * ratio / (1 - ratio))
+    return np.asarray(np.maximum(latest, ORDER_RATIOS[0] * previous) * ratio / (1 - ratio))
 
 
 def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:
@@ -262,14 +264,14 @@ def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatA
 
 
 def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
-    """Film on cells at most one refinement finer than those of a similar film; None if they do not suffice."""
-    recorded = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
+    """Film on the cells of a similar film, at most one refinement finer; None if these cells do not suffice."""
+    start_settings = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
     try:
         check_solved_for(start, film.case)
-        level = Level(**recorded["level"])
+        level = Level(**start_settings["level"])
         # Errors are of second order in the cells over the inlet length, a power 2/3 of the film: eq. (403).
         growth = max(film.film_ratio(start) ** (-4 / 3), 1.0)
-        direction_errors = {name: growth * np.array(recorded["direction_errors"][name]) for name in DIRECTIONS}
+        direction_errors = {name: growth * np.array(start_settings["direction_errors"][name]) for name in DIRECTIONS}
     except (InvalidInputError, KeyError, TypeError):
         return None
     is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
@@ -279,7 +281,7 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
         if error > accuracy and getattr(level, name) < film.resolution.levels - 1:
             level = level._replace(**{name: getattr(level, name) + 1})
             direction_errors[name] *= NEXT_RATIO
-    has_settings = all(recorded.get(name) == value for name, value in film.settings.items())
+    has_settings = all(start_settings.get(name) == value for name, value in film.settings.items())
     if not (is_near and has_settings) or _combine_errors(direction_errors, ratios).max() > accuracy:
         return None
     try:
@@ -305,12 +307,12 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     cells, height = level_film.problem.cells, level_film.solution.film
     low, high = film.contact_ends
     mid_length = 0.5 * (low + high)
-    within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
-    column_minima = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
+    is_near_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
+    column_minima = [_find_minimum(cells.y, cells.y_edges, row, is_near_contact) for row in height]
     least_films, positions, _ = np.transpose(column_minima)
     centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
-    first_side = cells.x < mid_length
-    first, last = (_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side))
+    first_half = cells.x < mid_length
+    first, last = (_find_minimum(cells.x, cells.x_edges, least_films, half) for half in (first_half, ~first_half))
     least = min(first, last)
     return Films(
         central_film=_interpolate(cells.x, centre_films, mid_length),
@@ -343,29 +345,29 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
     return Minimum(float(np.exp(logarithms[minimum])), float(positions[minimum]), length)
 
 
-def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
+def _label_film(film: FilmCase, refined_film: _RefinedFilm) -> xr.Dataset:
     """Label a film: on uniform cells along y, in the coordinates of the case."""
-    solved = refined.level_film
-    solution, grid = solved.solution, solved.shape.grid
+    level_film = refined_film.level_film
+    solution, grid = level_film.solution, level_film.shape.grid
     # The solver's lubricant flows along +y.
-    mirrored = film.speeds.entrainment < 0
-    sign = -1 if mirrored else 1
+    is_mirrored = film.speeds.entrainment < 0
+    sign = -1 if is_mirrored else 1
 
     def expand(values: FloatArray, outer_value: float) -> FloatArray:
         expanded = np.full(grid.shape, outer_value)
-        expanded[solved.columns] = values
-        return expanded[:, ::-1] if mirrored else expanded
+        expanded[level_film.columns] = values
+        return expanded[:, ::-1] if is_mirrored else expanded
 
     fluid_pressure, asperity_pressure = (
-        film.pressure_scale * _spread_pressure(solved, values)
+        film.pressure_scale * _spread_pressure(level_film, values)
         for values in (solution.fluid_pressure, solution.asperity_pressure)
     )
     fields = {"pressure": expand(fluid_pressure + asperity_pressure, 0.0)}
     if film.asperities is not None:
         fields["asperity_pressure"] = expand(asperity_pressure, 0.0)
-    cells = solved.problem.cells
+    cells = level_film.problem.cells
     uniform_y = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
-    flow_x, flow_y, end_flows = cells.cell_flows(solved.problem.fluid, solution.fluid_pressure, solution.film)
+    flow_x, flow_y, end_flows = cells.cell_flows(level_film.problem.fluid, solution.fluid_pressure, solution.film)
     flow_scale, is_full = film.speed * film.height_scale, fluid_pressure > 0
     for name, values, scale, is_known in (
         ("film_thickness", solution.film, film.height_scale, np.True_),
@@ -374,11 +376,11 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     ):
         uniform_values = scale * scipy.interpolate.PchipInterpolator(cells.y, values, axis=1)(uniform_y)
         fields[name] = expand(np.where(is_known, uniform_values, np.nan), np.nan)
-    motion = compute_rigid_motion(film, solved)
-    y = -grid.y[::-1] if mirrored else grid.y
-    films = compute_films(film, solved)
+    motion = compute_rigid_motion(film, level_film)
+    y = -grid.y[::-1] if is_mirrored else grid.y
+    films = compute_films(film, level_film)
     thicknesses = film.height_scale * films.thicknesses
-    errors = _combine_errors(refined.direction_errors, thicknesses).tolist()
+    errors = _combine_errors(refined_film.direction_errors, thicknesses).tolist()
     scalars: dict[str, float | int | bool] = {}
     for name, thickness, error in zip(FILM_NAMES, thicknesses.tolist(), errors, strict=True):
         scalars |= {name: thickness, f"{name}_error": error}
@@ -400,14 +402,14 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "end_flow_first": flow_scale * film.half_width * end_flows[0],
         "end_flow_last": flow_scale * film.half_width * end_flows[1],
         "normal_load": film.case.normal_load,
-        "mass_error": solution.residual * solved.problem.central_film / films.central_film,
-        "film_balance_error": solution.balance_error * solved.problem.central_film / films.central_film,
+        "mass_error": solution.residual * level_film.problem.central_film / films.central_film,
+        "film_balance_error": solution.balance_error * level_film.problem.central_film / films.central_film,
         "film_load_error": solution.load_error,
         "film_complementarity_error": solution.complementarity_error,
         "converged": solution.converged,
-        "newton_steps": sum(step.newton_steps for step in refined.solutions),
-        "linear_steps": sum(step.linear_steps for step in refined.solutions),
-        "film_levels": len(refined.solutions) - 1,
+        "newton_steps": sum(entry.newton_steps for entry in refined_film.solutions),
+        "linear_steps": sum(entry.linear_steps for entry in refined_film.solutions),
+        "film_levels": len(refined_film.solutions) - 1,
         "hertz_half_width": film.half_width,
         "hertz_max_pressure": film.pressure_scale,
     }
@@ -415,13 +417,13 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     if film.asperities is not None:
         rms = film.asperities.rms
         min_ratio = np.full(grid.cells_x, np.nan)
-        min_ratio[solved.columns] = film.height_scale * solution.film.min(axis=1) / rms
+        min_ratio[level_film.columns] = film.height_scale * solution.film.min(axis=1) / rms
         profiles["film_ratio"] = (("x",), min_ratio)
         # The ends are outside ISO 281: kappa refers to the film of the middle section.
         viscosity_ratio = (scalars["least_film_middle"] / rms) ** VISCOSITY_EXPONENT
         relative_error = scalars["least_film_middle_error"] / scalars["least_film_middle"]
         scalars |= {
-            "asperity_load_share": float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load),
+            "asperity_load_share": float((solution.asperity_pressure * cells.areas).sum() / level_film.problem.load),
             "roughness_rms": rms,
             "least_film_ratio": scalars["least_film"] / rms,
             "least_film_ratio_error": scalars["least_film_error"] / rms,
@@ -438,11 +440,11 @@ def compute_rigid_motion(film: FilmCase, level_film: FilmOnCells) -> RigidMotion
     """Approach at the centre of tilt, and tilt, relative to the reference lines under the pressure."""
     problem, state = level_film.problem, level_film.solution.state
     forces = (problem.cells.areas * state.pressure).sum(axis=1)
-    lines = level_film.line_motion(
+    line_motion = level_film.line_motion(
         film, state.pressure, film.half_width * float(np.average(problem.cells.x, weights=forces))
     )
     height, *tilts = -film.height_scale * state.motion
-    approach = height - lines.height(np.array([film.tilt_centre])).item()
+    approach = height - line_motion.height(np.array([film.tilt_centre])).item()
     shape = level_film.shape
     return RigidMotion(approach, tilts[0] / shape.prescribed.max_arm(shape.grid) if tilts else film.case.tilt)
 

@@ -59,13 +59,14 @@ MIN_CENTRED_WIDTH = 1e-3
 """Least width of the fine column about a point next to a step of the load, over the original fine column. Accuracy: on
 the top a step has infinite stresses."""
 
-MIRROR_ROUNDING = 1e-14  # rounding of a reflected position over the window. Accuracy.
-POSITION_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
+MIRROR_ROUNDING = 1e-14  # rounding of a reflected position over the window. Rounding.
+POSITION_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Rounding.
+GroupJumps = list[list[Jumps]]  # of each group and layer, about one position
 
 
 @dataclass(frozen=True, eq=False)
 class LateralAxis:
-    """Positions along y, and `count` cells along y, beginning with the cell `first` of the grid."""
+    """Positions along y, and `count` cells along y from the cell `first` of the grid."""
 
     grid: Grid
     y: FloatArray
@@ -130,8 +131,8 @@ class LateralAxis:
         return layers
 
 
-class Part(NamedTuple):
-    """Some of the columns at some depths, and the positions from which their field is interpolated."""
+class ColumnGroup(NamedTuple):
+    """Near columns, or a ring of merged columns, at some depths, and the positions that interpolate their field."""
 
     y: FloatArray
     interpolation_y: FloatArray | None  # (y, position): None if the positions are the given ones
@@ -141,41 +142,41 @@ class Part(NamedTuple):
     layers: Sequence[Layer] = ()
 
     @classmethod
-    def on_lattice(cls, lateral: LateralAxis, step: float, depth_indices: IntArray) -> Part:
+    def on_lattice(cls, lateral: LateralAxis, step: float, depth_indices: IntArray) -> ColumnGroup:
         """Positions along y at whole steps from the centre of a cell."""
-        numbers = (lateral.y - lateral.grid.y[0]) / step
-        first_numbers = np.floor(numbers).astype(np.int64) - (LATTICE_POINTS // 2 - 1)
-        weights = lagrange_weights(np.arange(float(LATTICE_POINTS)), numbers - first_numbers)
-        lattice, indices = np.unique(first_numbers[:, None] + np.arange(LATTICE_POINTS), return_inverse=True)
+        steps_from_cell = (lateral.y - lateral.grid.y[0]) / step
+        first_steps = np.floor(steps_from_cell).astype(np.int64) - (LATTICE_POINTS // 2 - 1)
+        weights = lagrange_weights(np.arange(float(LATTICE_POINTS)), steps_from_cell - first_steps)
+        lattice, indices = np.unique(first_steps[:, None] + np.arange(LATTICE_POINTS), return_inverse=True)
         matrix = np.zeros((lattice.size, lateral.y.size))
         matrix[indices.reshape(weights.shape), np.arange(lateral.y.size)[:, None]] = weights
         return cls(lateral.grid.y[0] + step * lattice, matrix, depth_indices)
 
-    def add_to(self, field: FloatArray, part_field: FloatArray) -> None:
-        """Add the part's field (component, x, y, z) at its positions to the field at the given positions."""
-        part_field = part_field[..., self.depth_indices]
+    def add_to(self, field: FloatArray, group_field: FloatArray) -> None:
+        """Add the group's field (component, x, y, z) at its positions to the field at the given positions."""
+        group_field = group_field[..., self.depth_indices]
         if self.interpolation_y is not None:
-            part_field = self.interpolation_y.T @ part_field
+            group_field = self.interpolation_y.T @ group_field
         if self.interpolation_z is not None:
-            field += part_field @ self.interpolation_z.T
+            field += group_field @ self.interpolation_z.T
         else:
-            field[..., self.depth_indices] += part_field
+            field[..., self.depth_indices] += group_field
 
 
-def _parts_by_depth(lateral: LateralAxis, z: FloatArray, is_refined: BoolArray) -> list[Part]:
-    """Return parts without layers: on lattices with at most half as many offsets from the cells as the positions."""
+def _groups_by_depth(lateral: LateralAxis, z: FloatArray, is_refined: BoolArray) -> list[ColumnGroup]:
+    """Return groups without layers: on lattices with at most half as many offsets from the cells as the positions."""
     # The refined cells are centred about each position: their field is not interpolated.
     steps_per_cell = np.divide(lateral.grid.dy, LATTICE_STEP * z, out=np.full(z.shape, np.inf), where=z > 0)
     offset_counts = np.exp2(np.ceil(np.log2(np.maximum(steps_per_cell, 1.0))))
     offset_counts[is_refined | (2 * offset_counts > lateral.offset_count)] = np.inf
-    parts = []
+    groups = []
     for count in np.unique(offset_counts).tolist():
         depth_indices = np.flatnonzero(offset_counts == count)
         if np.isfinite(count):
-            parts.append(Part.on_lattice(lateral, lateral.grid.dy / count, depth_indices))
+            groups.append(ColumnGroup.on_lattice(lateral, lateral.grid.dy / count, depth_indices))
         else:
-            parts.append(Part(lateral.y, None, depth_indices))
-    return parts
+            groups.append(ColumnGroup(lateral.y, None, depth_indices))
+    return groups
 
 
 def _odd_count(ratio: float) -> int:
@@ -186,9 +187,9 @@ def _odd_count(ratio: float) -> int:
 class SplitColumns(NamedTuple):
     """Columns around each point, and rings of merged columns farther away."""
 
-    parts: list[Part]  # near columns, then rings from the innermost one
-    jumps: list[list[list[Jumps]]]  # for each position along x and each part
-    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
+    groups: list[ColumnGroup]  # near columns, then rings from the innermost one
+    jumps: list[GroupJumps]  # for each position along x and each group
+    first_row: int  # first loaded row of the grid, and load (cell_x, y) on the rows from this row on
     load: FloatArray
 
 
@@ -205,62 +206,62 @@ def split_columns(
     x, y, z = (key.values for key in keys)
     if shape is None:
         loaded_rows = np.flatnonzero(cell_loads.values.any(axis=0))
-        first, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
+        first_row, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
         fine_cells, is_refined = None, np.zeros(z.size, bool)
     else:
         fine_cells = share_fine_cells(cell_loads, shape, grid, extent, image_sign)
-        first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
-    lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
+        first_row, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
+    lateral = LateralAxis(grid, y, first_row, fine_cells.count if fine_cells else load.shape[1])
 
-    def with_layers(part: Part, z: FloatArray, is_refined: BoolArray) -> Part:
-        axis, indices = replace(lateral, y=part.y), part.depth_indices
+    def add_layers(group: ColumnGroup, z: FloatArray, is_refined: BoolArray) -> ColumnGroup:
+        axis, indices = replace(lateral, y=group.y), group.depth_indices
         if fine_cells is None:
-            return part._replace(layers=axis.uniform_layers(z, indices))
+            return group._replace(layers=axis.uniform_layers(z, indices))
         coarse_layers = axis.shaped_layers(z, indices[~is_refined[indices]], fine=False)
-        return part._replace(layers=coarse_layers + axis.shaped_layers(z, indices[is_refined[indices]], fine=True))
+        return group._replace(layers=coarse_layers + axis.shaped_layers(z, indices[is_refined[indices]], fine=True))
 
-    parts = [with_layers(part, z, is_refined) for part in _parts_by_depth(lateral, z, is_refined)]
+    groups = [add_layers(group, z, is_refined) for group in _groups_by_depth(lateral, z, is_refined)]
     far_radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
     refined_radius = MAX_REFINED_DEPTH * grid.dy
     for radius in [refined_radius, far_radius] if is_refined.any() and refined_radius < far_radius else [far_radius]:
-        (ring,) = _parts_by_depth(lateral, np.array([radius]), np.array([False]))
+        (ring,) = _groups_by_depth(lateral, np.array([radius]), np.array([False]))
         depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
         ring = ring._replace(depth_indices=np.arange(depths.size), interpolation_z=interpolation_z, radius=radius)
-        parts.append(with_layers(ring, depths, np.zeros(depths.size, bool)))
+        groups.append(add_layers(ring, depths, np.zeros(depths.size, bool)))
     if fine_cells is None:
         edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image_sign, extent)
-        jumps = [_uniform_jumps(position, parts, edges, loads) for position in x.tolist()]
+        jumps = [_uniform_jumps(position, groups, edges, loads) for position in x.tolist()]
     else:
-        jumps = list(_shaped_jumps(x, parts, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min())))
-    return SplitColumns(parts, jumps, first, load)
+        jumps = list(_shaped_jumps(x, groups, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min())))
+    return SplitColumns(groups, jumps, first_row, load)
 
 
-def _uniform_jumps(x: float, parts: list[Part], edges: FloatArray, loads: FloatArray) -> list[list[Jumps]]:
-    """Jumps of columns with uniform loads (column, y) about a position, of each part."""
+def _uniform_jumps(x: float, groups: list[ColumnGroup], edges: FloatArray, loads: FloatArray) -> GroupJumps:
+    """Jumps of columns with uniform loads (column, y) about a position, of each group."""
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
-    unsplit = _SplitRange(edges[column : column + 1], column, column)
-    layer_loads, inserted_loads = ([[values] * len(part.layers) for part in parts] for values in (loads, loads[:0]))
-    return _jumps_around(x, parts, edges, unsplit, loads=layer_loads, inserted_loads=inserted_loads)
+    split_range = _SplitRange(edges[column : column + 1], column, column)
+    layer_loads, inserted_loads = ([[values] * len(group.layers) for group in groups] for values in (loads, loads[:0]))
+    return _jumps_around(x, groups, edges, split_range, loads=layer_loads, inserted_loads=inserted_loads)
 
 
 def _jumps_around(
     x: float,
-    parts: list[Part],
+    groups: list[ColumnGroup],
     edges: FloatArray,
     split_range: _SplitRange,
     *,
     loads: list[list[FloatArray]],
     inserted_loads: list[list[FloatArray]],
-) -> list[list[Jumps]]:
-    """Jumps of each part about a position, from loads (column, y) per part and layer; merged in rings."""
-    borders = split_range.borders(edges, x, [part.radius for part in parts if part.radius])
+) -> GroupJumps:
+    """Jumps of each group about a position, from loads (column, y) per group and layer; merged in rings."""
+    borders = split_range.borders(edges, x, [group.radius for group in groups if group.radius])
     (low, high), ring_borders, jumps = borders[0], pairwise(borders), []
-    for part, part_loads, part_inserted in zip(parts, loads, inserted_loads, strict=True):
-        if not part.radius:
+    for group, group_loads, group_inserted in zip(groups, loads, inserted_loads, strict=True):
+        if not group.radius:
             jumps.append(
                 [
                     split_range.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads, layer)
-                    for column_loads, fine_loads, layer in zip(part_loads, part_inserted, part.layers, strict=True)
+                    for column_loads, fine_loads, layer in zip(group_loads, group_inserted, group.layers, strict=True)
                 ]
             )
             continue
@@ -270,17 +271,18 @@ def _jumps_around(
             [
                 Jumps(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
                 for start, end in sections
-                for load, layer in zip(part_loads, part.layers, strict=True)
+                for load, layer in zip(group_loads, group.layers, strict=True)
             ]
         )
     return jumps
 
 
-def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: float) -> Iterator[list[list[Jumps]]]:
-    """Jumps of each part about each position; columns around the position are split unless they are narrow."""
+def _shaped_jumps(x: FloatArray, groups: list[ColumnGroup], fine: FineCells, max_width: float) -> Iterator[GroupJumps]:
+    """Jumps of each group about each position; columns around the position are split unless they are narrow."""
     shape = fine.shape_cells
     load = fine.shape_along_y(fine.far_load, shape.far_load)
-    loads = [[add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in part.layers] for part in parts]
+    images = fine.image_sign, fine.extent
+    loads = [[add_images(layer.loads(load), *images) for layer in group.layers] for group in groups]
     for first_position in range(0, x.size, POSITIONS_PER_BATCH):
         positions = x[first_position : first_position + POSITIONS_PER_BATCH].tolist()
         split_ranges = [_split_around(position, fine, max_width) for position in positions]
@@ -289,17 +291,17 @@ def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: 
         # Neighbouring positions have equal columns.
         _, first, column = np.unique(np.hstack([means, shape_means]), axis=0, return_index=True, return_inverse=True)
         load = fine.shape_along_y(means[first], shape_means[first])
-        inserted_loads = [[] if part.radius else [layer.loads(load) for layer in part.layers] for part in parts]
+        inserted_loads = [[] if group.radius else [layer.loads(load) for layer in group.layers] for group in groups]
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
             start, stop = stop, stop + split_range.inserted.size - 1
             rows = column.ravel()[start:stop]
-            split_loads = [[layer_loads[rows] for layer_loads in part_loads] for part_loads in inserted_loads]
-            yield _jumps_around(position, parts, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
+            split_loads = [[layer_loads[rows] for layer_loads in group_loads] for group_loads in inserted_loads]
+            yield _jumps_around(position, groups, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
 
 
 class _SplitRange(NamedTuple):
-    """Split columns around a point, and one more on either side, without the moments of the split columns."""
+    """Columns that replace the columns around a point, and one column more on either side."""
 
     inserted: FloatArray  # edges of the new columns; one edge without any
     start: int  # first replaced column, and the column behind the last
@@ -319,9 +321,9 @@ class _SplitRange(NamedTuple):
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
         if self.start == self.stop:
             return np.zeros((0, fine.count))
-        is_summed = np.diff(np.searchsorted(self.inserted, fine.edges)) < 2  # columns that are not split
+        is_unsplit = np.diff(np.searchsorted(self.inserted, fine.edges)) < 2
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
-        return fine.moment_loads(is_summed)[np.searchsorted(fine.edges, midpoints) - 1]
+        return fine.moment_loads(is_unsplit)[np.searchsorted(fine.edges, midpoints) - 1]
 
     def jumps(
         self, edges: FloatArray, first: int, loads: FloatArray, inserted_loads: FloatArray, layer: Layer
@@ -398,22 +400,22 @@ def columns_field(
     if not grid.is_symmetric or np.isinf(extent[0]) != np.isinf(extent[1]):
         return _sum_columns(load, shape, influence, grid, points=points, extent=extent)
     low, high = grid.x_range
-    in_second_half = points.x > 0.5 * (low + high)
-    x = np.where(in_second_half, low + high - points.x, points.x)
+    is_in_second_half = points.x > 0.5 * (low + high)
+    x = np.where(is_in_second_half, low + high - points.x, points.x)
     arrays = [load] if shape is None else [load, shape]
     is_symmetric = all(np.array_equal(values, values[::-1]) for values in arrays)
     field = np.empty((influence.components, x.size, points.z.size, points.y.size)).swapaxes(2, 3)
-    whole = np.full(x.size, True)
+    all_points = np.full(x.size, True)
     # The step -1 reflects the load.
-    for step, half in ((1, whole),) if is_symmetric else ((1, ~in_second_half), (-1, in_second_half)):
-        if half.any():
-            rounded_x = np.round(x[half] / (MIRROR_ROUNDING * (high - low)))
+    for step, is_in_half in ((1, all_points),) if is_symmetric else ((1, ~is_in_second_half), (-1, is_in_second_half)):
+        if is_in_half.any():
+            rounded_x = np.round(x[is_in_half] / (MIRROR_ROUNDING * (high - low)))
             _, first_indices, indices = np.unique(rounded_x, return_index=True, return_inverse=True)
-            half_points = points._replace(x=x[half][first_indices])
+            half_points = points._replace(x=x[is_in_half][first_indices])
             half_shape = None if shape is None else shape[::step]
             half_field = _sum_columns(load[::step], half_shape, influence, grid, points=half_points, extent=extent)
-            field[:, half] = half_field[:, indices]
-    field[:, in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
+            field[:, is_in_half] = half_field[:, indices]
+    field[:, is_in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
     return field
 
 
@@ -432,24 +434,24 @@ def _sum_columns(
     shape_key = None if shape is None else ArrayKey(shape)
     columns = split_columns(ArrayKey(load), shape_key, grid, extent, influence.load.sign_x, keys=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
-    part_fields = [
+    group_fields = [
         np.zeros(
             (
                 influence.components,
                 x.size,
-                part.y.size,
-                z.size if part.interpolation_z is None else part.depth_indices.size,
+                group.y.size,
+                z.size if group.interpolation_z is None else group.depth_indices.size,
             )
         )
-        for part in columns.parts
+        for group in columns.groups
     ]
-    for i, (position, jumps_of_parts) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
-        for part_field, jumps in zip(part_fields, jumps_of_parts, strict=True):
+    for i, (position, jumps_of_groups) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
+        for group_field, jumps in zip(group_fields, jumps_of_groups, strict=True):
             for layer_jumps in jumps:
                 layer, layer_field = layer_jumps.layer, layer_jumps.field(influence, position)
-                part_field[:, i][:, layer.points[:, None], layer.depth_indices] += layer_field.swapaxes(1, 2)
-    for part, part_field in zip(columns.parts, part_fields, strict=True):
-        part.add_to(field, part_field)
+                group_field[:, i][:, layer.points[:, None], layer.depth_indices] += layer_field.swapaxes(1, 2)
+    for group, group_field in zip(columns.groups, group_fields, strict=True):
+        group.add_to(field, group_field)
     if np.isfinite(extent).all():
-        field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)
+        field += far_images(columns.load, influence, grid, columns.first_row, points, extent=extent)
     return field

@@ -135,18 +135,18 @@ def _kernel_spectrum(
 
 def _invert_along_x(spectrum: FloatArray, load_transform: ComplexArray, *, mirrored: bool, odd: bool) -> ComplexArray:
     """Transform along y (component, row, wavenumber) of components even or odd along x, from kernels and load."""
-    half = spectrum.shape[1] - 1
+    last = spectrum.shape[1] - 1
     if mirrored and not odd:
-        return np.asarray(fft.idct(spectrum[:, :half] * load_transform, type=2, axis=1, overwrite_x=True))
+        return np.asarray(fft.idct(spectrum[:, :last] * load_transform, type=2, axis=1, overwrite_x=True))
     product = np.zeros((spectrum.shape[0], *load_transform.shape), np.complex128)
     if mirrored:
-        np.multiply(-spectrum[:, 1:half], load_transform[1:], out=product[:, :-1])
+        np.multiply(-spectrum[:, 1:last], load_transform[1:], out=product[:, :-1])
         return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True))
-    np.multiply(spectrum, load_transform[: half + 1], out=product[:, : half + 1])
-    np.multiply(spectrum[:, half - 1 : 0 : -1], load_transform[half + 1 :], out=product[:, half + 1 :])
+    np.multiply(spectrum, load_transform[: last + 1], out=product[:, : last + 1])
+    np.multiply(spectrum[:, last - 1 : 0 : -1], load_transform[last + 1 :], out=product[:, last + 1 :])
     if odd:
-        product[:, : half + 1] *= 1j
-        product[:, half + 1 :] *= -1j
+        product[:, : last + 1] *= 1j
+        product[:, last + 1 :] *= -1j
     return np.asarray(fft.ifft(product, axis=1, overwrite_x=True))
 
 
@@ -173,8 +173,8 @@ def centred_field(
         half = cells_x
     # At half a period an odd kernel is undefined: both signs coincide.
     shape = (half, fft.next_fast_len(reach_y + 1, real=True))
-    along_y = fft.rfft(load, 2 * shape[1], axis=1)
-    load_transform = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
+    lateral = fft.rfft(load, 2 * shape[1], axis=1)
+    load_transform = fft.dct(lateral, type=2, n=half, axis=0) if mirrored else fft.fft(lateral, 2 * half, axis=0)
     is_odd_x, is_odd_y = np.array(influence.sign_along_x) < 0, np.array(influence.sign_along_y) < 0
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):

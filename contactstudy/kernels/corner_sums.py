@@ -12,7 +12,7 @@ from contactstudy.kernels.fine_cells import NEIGHBOURS, coarsen
 from contactstudy.kernels.images import Influence, snap_offsets
 from contactstudy.kernels.smooth_load import ShapedLoad
 
-OFFSET_TOLERANCE = 1e-6  # largest difference of equal offsets from the cell centre, over a cell. Accuracy.
+OFFSET_TOLERANCE = 1e-6  # largest difference of equal offsets from the cell centre, over a cell. Rounding.
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +21,7 @@ class AlignedPoints:
 
     offset: float  # distance from the cell centre, metres
     points: IntArray  # indices of the points on the axis
-    cells: IntArray  # cell of each (also outside the grid)
+    cells: IntArray  # cell of each point, possibly outside the grid
 
 
 def aligned_points(positions: FloatArray, first_centre: float, step: float) -> list[AlignedPoints]:
@@ -37,7 +37,7 @@ def aligned_points(positions: FloatArray, first_centre: float, step: float) -> l
 
 
 def fold_offsets(offsets: FloatArray, step: float) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Distances from 0 of uniform offsets, the index of each offset among them, and its sign; all offsets if uneven."""
+    """Distances from 0 of symmetric offsets, each offset's index among them and its sign; other offsets unchanged."""
     half_steps = np.round(2 * offsets / step).astype(np.int64)
     if np.abs(2 * offsets / step - half_steps).max() >= OFFSET_TOLERANCE:
         return offsets, np.arange(offsets.size), np.ones(offsets.size)
@@ -111,13 +111,13 @@ class Layer:
             indices = self._indices[start : start + count]
             negative_count = int((self._signs[start : start + count] < 0).sum())
             if negative_count:
-                before = slice(indices[negative_count - 1], indices[0] + 1)
-                even[:, before] = jumps[:, negative_count - 1 :: -1]
-                odd[:, before] = -even[:, before]
+                negative = slice(indices[negative_count - 1], indices[0] + 1)
+                even[:, negative] = jumps[:, negative_count - 1 :: -1]
+                odd[:, negative] = -even[:, negative]
             if negative_count < count:
-                behind = slice(indices[negative_count], indices[-1] + 1)
-                even[:, behind] += jumps[:, negative_count:]
-                odd[:, behind] += jumps[:, negative_count:]
+                positive = slice(indices[negative_count], indices[-1] + 1)
+                even[:, positive] += jumps[:, negative_count:]
+                odd[:, positive] += jumps[:, negative_count:]
         return folded.reshape(2 * starts.size, -1).T
 
 

@@ -85,7 +85,7 @@ def _uniform_field(
 ) -> FloatArray:
     """Field at points with equal offsets from uniform cells, by fast convolution."""
     x, y, z = points
-    mirrors_at_first, mirrors_at_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
+    has_first_mirror, has_second_mirror = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     loaded_rows = np.flatnonzero(load.any(axis=0))
     first_row, stop_row = int(loaded_rows[0]), int(loaded_rows[-1]) + 1
     load = load[:, first_row:stop_row]
@@ -93,16 +93,16 @@ def _uniform_field(
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
     is_on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
     image_sign = influence.load.sign_x
-    if is_on_centres and (mirrors_at_first or not mirrors_at_second) and (image_sign > 0 or not mirrors_at_first):
+    if is_on_centres and (has_first_mirror or not has_second_mirror) and (image_sign > 0 or not has_first_mirror):
         cell = (grid.dx, grid.dy)
         return centred_field(load, influence, cell, rows[0].cells, columns[0].cells, z=z, extent=extent)
     first_centre = grid.x[0]
-    if mirrors_at_first:  # the mirrored load precedes the load
+    if has_first_mirror:  # the mirrored load precedes the load
         load = np.concatenate([image_sign * load[::-1], load])
         first_centre -= grid.cells_x * grid.dx
-    elif mirrors_at_second:
+    elif has_second_mirror:
         load = np.concatenate([load, image_sign * load[::-1]])
-    length = extent[1] if mirrors_at_first and mirrors_at_second else np.inf
+    length = extent[1] if has_first_mirror and has_second_mirror else np.inf
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
         for row in aligned_points(x, float(first_centre), grid.dx):
@@ -122,7 +122,7 @@ def half_space_influence(
     ]
     far_images = FarImages(extent[1] - extent[0], image_sign, CHEBYSHEV_X)
     first_cell = columns if np.isfinite(extent[0]) else 0
-    layers = []
+    depth_fields = []
     for depth in points.z.tolist():
         corner = influence.corner_at(depth)
         edge_rows = corner(distances, points.y + half_width) - corner(distances, points.y - half_width)
@@ -137,8 +137,8 @@ def half_space_influence(
             field += np.einsum(
                 "xp,cpqy,qi->cxiy", far_images.interpolation(points.x - extent[0]), kernel, mean_weights, optimize=True
             )
-        layers.append(field)
-    return np.stack(layers, axis=-1)
+        depth_fields.append(field)
+    return np.stack(depth_fields, axis=-1)
 
 
 def _aligned_field(

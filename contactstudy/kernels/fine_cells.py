@@ -1,9 +1,9 @@
-"""Finer cells under a load: they carry its means near the top; whole cells carry its moments farther below.
+"""Finer cells of a load: they carry its means for fields near the top; whole cells carry its moments for deep fields.
 
 Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
 matters, and on the top a step of traction makes the stresses infinite. Near the top the load has the shape of a given
-pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and switches do
-not depend on the load, and the field is linear in the load.
+pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and
+depths of the change do not depend on the load, so the field is linear in the load.
 """
 
 from __future__ import annotations
@@ -89,14 +89,14 @@ class FineCells:
         return self._smooth.shape_loads(self.cell_loads.T)
 
     @cached_property
-    def _part_edges(self) -> FloatArray:
-        """Edges of the fine cells along x, metres; the load on the parts of a constant load is the same load."""
+    def _fine_edges(self) -> FloatArray:
+        """Edges of the fine cells along x, metres; a constant load needs no fine cells."""
         return _split_edges(self.grid.x_edges, np.full(self.grid.cells_x, not self._load_along_x.is_constant))
 
     @cached_property
     def x_edges(self) -> FloatArray:
         """Edges of the fine cells along x and of their nearest images, metres."""
-        return mirror_edges(self._part_edges, self.extent)
+        return mirror_edges(self._fine_edges, self.extent)
 
     @cached_property
     def step_edges(self) -> FloatArray:
@@ -104,8 +104,8 @@ class FineCells:
         shape, image_sign = self._smooth, self.image_sign
         first, last = shape.sign * shape.first, shape.sign * shape.last
         low, high = (image_sign * np.isfinite(end) for end in self.extent)
-        before, behind = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
-        edges = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLATNESS_TOLERANCE * np.abs(self.shape).max()]
+        lower, upper = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
+        edges = self.grid.x_edges[np.abs(upper - lower).max(axis=0) > FLATNESS_TOLERANCE * np.abs(self.shape).max()]
         return np.concatenate([edges, *(2 * end - edges for end in self.extent if np.isfinite(end))])
 
     @cached_property
@@ -126,7 +126,7 @@ class FineCells:
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
         # In coupled cells the means of the smooth load differ from the load on the cells.
-        moments = self._without_images(moment_loads(self.edges, self._x_moments).T)
+        moments = self._remove_images(moment_loads(self.edges, self._x_moments).T)
         return np.asarray(self._load_along_x.cell_means.T + moments)
 
     def is_refined_along_y(self, z: FloatArray) -> BoolArray:
@@ -154,11 +154,11 @@ class FineCells:
         return np.asarray(np.diff(integral, axis=1)[:, is_column].T / np.diff(x)[is_column, None])
 
     def shape_along_y(self, columns: FloatArray, shape: FloatArray) -> ShapedLoad:
-        """Load along y of columns (column, y) with a shape (column, y)."""
+        """Smooth load along y of columns (column, y) with a shape (column, y)."""
         return SmoothLoad.of(shape, self.y_edges, extends_beyond=True).shape_loads(columns)
 
     def coarse_load(self, *, fine_x: bool) -> tuple[FloatArray, Grid]:
-        """Load on uniform cells with the moments of the fine cells: whole along y, fine or whole along x."""
+        """Load on uniform cells with the moments of the fine cells: whole cells along y, fine or whole along x."""
         fine_loads, grid = self.fine_load(0.0)
         margin = NEIGHBOURS * self.grid.dy
         y_range = (float(self.y_edges[0]) - margin, float(self.y_edges[-1]) + margin)
@@ -167,7 +167,7 @@ class FineCells:
         return (loads, cells) if fine_x else self.coarsen_x(loads, cells)
 
     def coarsen_x(self, loads: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
-        """Load on uniform cells, whole along x with the moments of the fine cells, and the grid."""
+        """Load on uniform cells, whole cells along x with the moments of the fine cells, and the grid."""
         margin, has_end = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
         padded = np.pad(loads, ((margin, margin), (0, 0)), mode="symmetric")
         for has_image, loads_beyond in zip(has_end, (padded[:margin], padded[-margin:]), strict=True):
@@ -191,11 +191,11 @@ class FineCells:
 
         def column_means(cells: FineCells) -> FloatArray:
             # The neighbours of an unsplit column carry the column's moment.
-            moments = self._without_images(cells.moment_loads(is_unsplit))
+            moments = self._remove_images(cells.moment_loads(is_unsplit))
             return cells.column_means([edges]) + np.repeat(moments, np.where(is_split, PARTS_X, 1), axis=0)
 
         fine_loads, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
-        # The positions on the faces follow from the grid, not from the loaded cells: the field is additive.
+        # The cells follow from the grid, not from the loaded cells, so that fields of several loads add up.
         rows_beyond = self.grid.cells_y + SPARE_CELLS - (self.first + self.count)
         cells = np.pad(fine_loads, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * rows_beyond)))
         low, high = self.grid.y_range
@@ -205,8 +205,8 @@ class FineCells:
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
         """Load on uniform cells split along x and y, and the grid."""
         # Points at the distance `offset` along y from the middles of cells are in the middles of fine cells.
-        columns, shape = (cells.column_means([self._part_edges]) for cells in (self, self.shape_cells))
-        return self._refine_along_y(self._part_edges, columns, shape, offset)
+        columns, shape = (cells.column_means([self._fine_edges]) for cells in (self, self.shape_cells))
+        return self._refine_along_y(self._fine_edges, columns, shape, offset)
 
     def _refine_along_y(
         self, edges: FloatArray, columns: FloatArray, shape: FloatArray, offset: float
@@ -215,12 +215,12 @@ class FineCells:
         step = self.grid.dy / PARTS_Y
         shift = offset - step * np.round(offset / step)
         y_edges = self.y_edges[0] + shift + step * np.arange(PARTS_Y * self.count + 1.0)
-        if shift:  # one more cell covers the remaining part of the first or the last
+        if shift:  # one more cell covers the rest of the first or last cell
             y_edges = np.append(y_edges, y_edges[-1] + step) if shift < 0 else np.append(y_edges[0] - step, y_edges)
         cells = self.shape_along_y(columns, shape).equivalent_means(y_edges)
         return cells, Grid.between(edges, (float(y_edges[0]), float(y_edges[-1])), cells.shape[1])
 
-    def _without_images(self, columns: FloatArray) -> FloatArray:
+    def _remove_images(self, columns: FloatArray) -> FloatArray:
         """Columns without images."""
         image_count = self.grid.cells_x if np.isfinite(self.extent[0]) else 0
         return columns[image_count : image_count + self.grid.cells_x]
@@ -253,10 +253,10 @@ def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:
         )
 
     weights = np.linalg.solve(moments(cells, 1.0), moments(midpoints, 1 / fine_per_cell)) / fine_per_cell  # eq. (32c)
-    by_cell = fine_loads.reshape(fine_loads.shape[0] // fine_per_cell, fine_per_cell, *fine_loads.shape[1:])
-    loads = np.zeros((by_cell.shape[0] + 2 * NEIGHBOURS, *fine_loads.shape[1:]))
+    loads_by_cell = fine_loads.reshape(fine_loads.shape[0] // fine_per_cell, fine_per_cell, *fine_loads.shape[1:])
+    loads = np.zeros((loads_by_cell.shape[0] + 2 * NEIGHBOURS, *fine_loads.shape[1:]))
     for index, cell_weights in enumerate(weights):
-        loads[index : index + by_cell.shape[0]] += np.tensordot(by_cell, cell_weights, axes=(1, 0))
+        loads[index : index + loads_by_cell.shape[0]] += np.tensordot(loads_by_cell, cell_weights, axes=(1, 0))
     return loads
 
 
@@ -279,8 +279,8 @@ def add_images(columns: Array, image_sign: int, extent: tuple[float, float]) -> 
 
 
 def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tuple[int, int]:
-    """First column around `x` that is wide over its distance, and the column behind the last; equal if none is wide."""
-    # Columns up to the width `min_width` at either end are left out.
+    """First column around `x` that is wide over its distance, and the column behind the last; equal without one."""
+    # Outer columns up to the width `min_width` do not count as wide.
     widths = np.diff(edges)
     distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
     is_wide = widths > MIN_RESOLVED_WIDTH * distance

@@ -21,8 +21,8 @@ from contactstudy.kernels.load import Corner, Load
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
 NEAR_IMAGES = 5  # images on either side before the uniformly spread load. Accuracy.
-FAR_LIMIT = 1e6  # end of the spread load over the length. Accuracy; displacements refer to this distance.
-ROUNDING = 1e-9  # rounding of an offset over a cell. Accuracy.
+FAR_LIMIT = 1e6  # end of the spread load, to which displacements refer, over the length. Accuracy.
+ROUNDING = 1e-9  # rounding of an offset over a cell. Rounding.
 CHEBYSHEV_X = 16  # points along x of the interpolated influence of images. Accuracy.
 IMAGE_CELL = 1e-3  # width of the cells that represent points, over the length. Accuracy.
 INTERPOLATION_ERROR = 1.5e-8  # relative error of the interpolated influence of images. Accuracy.
@@ -57,7 +57,7 @@ def image_kernel(
 ) -> FloatArray:
     """Influence of unit loads on the images of a cell from the distance `nearest` on, every ``2 length``."""
     period = 2 * length
-    spread_from, spread_to = nearest + (NEAR_IMAGES - 0.5) * period, FAR_LIMIT * length
+    spread_start, spread_stop = nearest + (NEAR_IMAGES - 0.5) * period, FAR_LIMIT * length
     shifts: list[float] = []
     weights: list[float] = []
 
@@ -68,13 +68,13 @@ def image_kernel(
 
     for index in range(NEAR_IMAGES):
         add_spread_load(nearest + period * index - 0.5 * dx, nearest + period * index + 0.5 * dx, 1.0)
-    # Gauss points of the cell: the spread load of a cell equals those of its parts.
+    # Two Gauss points of the cell represent the shifts of its spread load.
     for offset in (-dx / np.sqrt(12), dx / np.sqrt(12)):
-        add_spread_load(spread_from + offset, spread_to, 0.5 * dx / period)
+        add_spread_load(spread_start + offset, spread_stop, 0.5 * dx / period)
     step = 0.1 * length
     for side_shift in (-step, step):
         slope = period / 24 * np.sign(side_shift) / (2 * step)  # eq. (32e)
-        add_spread_load(spread_from + side_shift - 0.5 * dx, spread_from + side_shift + 0.5 * dx, slope)
+        add_spread_load(spread_start + side_shift - 0.5 * dx, spread_start + side_shift + 0.5 * dx, slope)
 
     nodes_x, interpolation_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
     nodes_y, interpolation_y = interpolation_points(y, length)
@@ -127,7 +127,7 @@ class FarImages:
 
 
 def polynomial_count(half_range: float, distance: float, error: float = INTERPOLATION_ERROR) -> int:
-    """Return how many points a polynomial on a range ``2 half_range`` needs for loads at least `distance` away."""
+    """Return the number of points of a polynomial on a range ``2 half_range`` for loads at least `distance` away."""
     # Each point divides the error by ``exp(asinh(distance / half_range))``.
     return int(np.ceil(-np.log(error) / np.arcsinh(distance / half_range))) + 1
 

@@ -58,7 +58,7 @@ NORMAL_RESPONSE = Response(Load.NORMAL, Load.NORMAL)  # normal displacement of t
 
 Corner = Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
 
-TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres
+TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres. Rounding.
 
 
 def _inverse_sinh_ratio(numerator: FloatArray, square: FloatArray, r: FloatArray) -> FloatArray:
@@ -82,7 +82,7 @@ def _stack_components(*components: FloatArray) -> FloatArray:
 
 def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions (6, ...) of xx, yy, zz, xy, xz, yz; unit pressure has their second mixed difference."""
-    # Factors of two of the variables are products of small arrays; those of all three take most of the time.
+    # Factors that depend on two variables are small arrays; factors of all three take most of the time.
     xx, yy, zz, xy = x * x, y * y, np.square(z), x * y
     squares = xx + yy
     r = np.sqrt(squares + zz)
@@ -92,10 +92,10 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     chi_xx = _angle(xy * squares, r_z * (r * xx + z * yy))
     xy_r = xy * inverse_r
     term_x, term_y = xy_r * along_x, xy_r * along_y
-    compressibility, lateral_part = 1 - 2 * poisson, 2 * poisson * angle
+    compressibility, lateral_term = 1 - 2 * poisson, 2 * poisson * angle
     return _stack_components(
-        term_x - lateral_part - compressibility * chi_xx,
-        term_y - lateral_part - compressibility * (angle - chi_xx),
+        term_x - lateral_term - compressibility * chi_xx,
+        term_y - lateral_term - compressibility * (angle - chi_xx),
         -(angle + term_x + term_y),
         -compressibility * np.log(np.maximum(r_z, TINY)) - z * inverse_r,
         z * along_x * y * inverse_r,

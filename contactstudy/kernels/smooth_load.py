@@ -25,7 +25,7 @@ determine the end of a load."""
 MIN_NEIGHBOUR_RATIO = 0.5
 """Least ratio of the shape's means in neighbouring cells with a continuous ratio between them. Accuracy."""
 
-CONSTANT_ROUNDING = 1e-14  # rounding of a constant over the largest one. Accuracy.
+CONSTANT_ROUNDING = 1e-14  # rounding of a constant over the largest value. Rounding.
 EMPTY_LEVEL = 1e-12  # uniform shape in cells without a shape, over the largest mean. Accuracy.
 
 MIN_LOADED_FRACTION = 0.5
@@ -64,18 +64,18 @@ class SmoothLoad:
         )
         first, last = face_values[:, :-1].copy(), face_values[:, 1:].copy()
         middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
-        fixed, coupled_to_next = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
-        forwards = _DirectedRows(
-            loads=loads, sign=sign, widths=widths, first=first, middle=middle, last=last, knot=knot, fixed=fixed
+        is_fixed, coupled_to_next = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
+        forward_rows = _DirectedRows(
+            loads=loads, sign=sign, widths=widths, first=first, middle=middle, last=last, knot=knot, is_fixed=is_fixed
         )
-        for cell_row, cell in forwards.shape_ends(extends_beyond=extends_beyond):
+        for cell_row, cell in forward_rows.shape_ends(extends_beyond=extends_beyond):
             coupled_to_next[cell_row, cell] = True
-        backwards = forwards.reverse()
+        backward_rows = forward_rows.reverse()
         np.subtract(1.0, knot, out=knot)
-        for cell_row, cell in backwards.shape_ends(extends_beyond=extends_beyond):
+        for cell_row, cell in backward_rows.shape_ends(extends_beyond=extends_beyond):
             coupled_to_next[cell_row, widths.size - 2 - cell] = True
         np.subtract(1.0, knot, out=knot)
-        is_free = ~fixed & (loads > 0)
+        is_free = ~is_fixed & (loads > 0)
         middle[is_free] = _solve_knot_value(loads[is_free], first[is_free], last[is_free])
         return cls(
             edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, coupled_to_next=coupled_to_next
@@ -99,9 +99,9 @@ class SmoothLoad:
             cell_force, group_force = (_group_sums(values, group_start) for values in (cell_force, force))
         ratio = cell_force / group_force
         mean = np.where(self.coupled_to_next | is_coupled_back | is_empty, 0.0, force / widths)
-        near, far = mean[:, :-1], mean[:, 1:]
+        mean_before, mean_behind = mean[:, :-1], mean[:, 1:]
         # The ratio in a cell with a small mean is inaccurate.
-        is_continuous = near * far > MIN_NEIGHBOUR_RATIO * np.maximum(near**2, far**2)
+        is_continuous = mean_before * mean_behind > MIN_NEIGHBOUR_RATIO * np.maximum(mean_before**2, mean_behind**2)
         first_force, last_force = shape._face_forces()
         weight = first_force[:, 1:] / np.where(is_continuous, first_force[:, 1:] + last_force[:, :-1], 1.0)
         face_ratio = ratio[:, :-1] + weight * np.diff(ratio, axis=1)
@@ -178,10 +178,10 @@ class ShapedLoad:
             return [*(middle * moment for moment in whole[:-1]), *whole]
         half_width = 0.5 * np.diff(self.edges)[cell]
         half = self.shape.moments_up_to(cell, np.minimum(x, self.edges[cell] + half_width), order + 1)
-        rise, start = (last - middle) / half_width, 2 * middle - last  # in the second half
-        first_rise, start_change = (middle - first) / half_width, first - start
+        slope, intercept = (last - middle) / half_width, 2 * middle - last  # in the second half
+        first_slope, change = (middle - first) / half_width, first - intercept
         moments = [
-            start * whole[i] + rise * whole[i + 1] + start_change * half[i] + (first_rise - rise) * half[i + 1]
+            intercept * whole[i] + slope * whole[i + 1] + change * half[i] + (first_slope - slope) * half[i + 1]
             for i in range(order + 1)
         ]
         return [*moments, *whole]
@@ -216,8 +216,8 @@ class ShapedLoad:
         sums = np.stack(self._moments_up_to(np.append(cell[0], cell), points, 0))
         force, shape_force, moment = sums[..., 1:] - np.where(np.append(True, np.diff(cell) == 0), sums[..., :-1], 0.0)
         moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * shape_force
-        parts = np.stack([force, moment, np.sign(shape_force) * force, np.abs(shape_force)])
-        force, moment, aligned_force, size = np.add.reduceat(parts, first_points, axis=-1)
+        terms = np.stack([force, moment, np.sign(shape_force) * force, np.abs(shape_force)])
+        force, moment, aligned_force, size = np.add.reduceat(terms, first_points, axis=-1)
         ratio = aligned_force / np.where(size > 0, size, 1.0)
         return np.asarray(force / np.diff(edges) + moment_loads(edges, ratio * moment))
 
@@ -259,7 +259,7 @@ class _DirectedRows:
     middle: FloatArray
     last: FloatArray
     knot: FloatArray
-    fixed: BoolArray
+    is_fixed: BoolArray
 
     def reverse(self) -> _DirectedRows:
         """Return the same arrays in the opposite direction."""
@@ -283,7 +283,7 @@ class _DirectedRows:
             return np.where(cell >= steps, values, 0.0)
 
         load_1, load_2, load_3 = previous_loads(1), previous_loads(2), previous_loads(3)
-        face, width = self._face(cell, load_1, load_2, 1), self.widths[cell]
+        face, width = self._extrapolate_face(cell, load_1, load_2, 1), self.widths[cell]
         falling_ends = np.flatnonzero(
             (load_2 > MIN_EQUAL_RATIO * load_1) & (load_1 > end_load / MIN_EQUAL_RATIO) & (face > 0)
         )
@@ -297,7 +297,7 @@ class _DirectedRows:
         length_ratio = 1.5 * end_load / face  # eq. (32b)
         is_inside = length_ratio <= 1
         index = row[is_inside], cell[is_inside]
-        self.knot[index], self.fixed[index] = length_ratio[is_inside], True
+        self.knot[index], self.is_fixed[index] = length_ratio[is_inside], True
         self.middle[index] = self.last[index] = 0.0
         # The load extends neither into the last cell of the row nor to a neighbour of another contact.
         last_cell = self.widths.size - 1
@@ -309,7 +309,7 @@ class _DirectedRows:
         self._extend_beyond(row[is_beyond], cell[is_beyond], face[is_beyond], length_ratio[is_beyond])
         extended_cells = row[is_beyond], cell[is_beyond]
         # If the loaded part of the last cell is narrow, the last two cells share their force.
-        face = self._face(cell, load_2, load_3, 2)
+        face = self._extrapolate_face(cell, load_2, load_3, 2)
         previous_width = self.widths[np.maximum(cell - 1, 0)]
         length = 1.5 * (load_1 * previous_width + end_load * width) / np.where(face > 0, face, np.inf)
         narrow_ends = np.flatnonzero(
@@ -324,7 +324,7 @@ class _DirectedRows:
         self.last[row, cell - 2] = self.first[row, cell - 1] = face
         self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * previous_width / length)
         self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - previous_width / length)
-        self.knot[row, cell - 1], self.fixed[row, cell - 1] = 0.5, True
+        self.knot[row, cell - 1], self.is_fixed[row, cell - 1] = 0.5, True
         self.knot[row, cell] = (length - previous_width) / width
         return [extended_cells, (row, cell - 1)]
 
@@ -332,12 +332,12 @@ class _DirectedRows:
         """Shape the last loaded cell and the next, in which the square falls to zero."""
         self.middle[row, cell] = face * np.sqrt(1 - 0.5 / length_ratio)
         self.last[row, cell] = self.first[row, cell + 1] = face * np.sqrt(1 - 1 / length_ratio)
-        self.fixed[row, cell] = True
+        self.is_fixed[row, cell] = True
         width_ratio = self.widths[cell] / self.widths[cell + 1]
         self.knot[row, cell + 1] = (length_ratio - 1) * width_ratio
         self.sign[row, cell + 1] = self.sign[row, cell]
 
-    def _face(self, cell: IntArray, near_load: FloatArray, far_load: FloatArray, steps: int) -> FloatArray:
+    def _extrapolate_face(self, cell: IntArray, near_load: FloatArray, far_load: FloatArray, steps: int) -> FloatArray:
         """Value on the last face of the cells `steps` before, extrapolated linearly in the square."""
         near_width = self.widths[np.maximum(cell - steps, 0)]
         far_width = self.widths[np.maximum(cell - steps - 1, 0)]
@@ -358,11 +358,11 @@ def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _moments_of_root(
-    a: FloatArray, b: FloatArray, length: FloatArray, piece_length: FloatArray, order: int
+    a: FloatArray, b: FloatArray, length: FloatArray, section_length: FloatArray, order: int
 ) -> list[FloatArray]:
-    """Moments up to `order`, about its start, of the first part of a piece with a linear square."""
-    # The part has the length `length`, the piece `piece_length`, and values `a` and `b` at its ends.
-    end_square = a * a + (b * b - a * a) * (length / np.where(piece_length > 0, piece_length, 1.0))
+    """Moments up to `order` about the start of a section with a linear square, over its first `length`."""
+    # The whole section has the length `section_length`, and the values `a` and `b` at its ends.
+    end_square = a * a + (b * b - a * a) * (length / np.where(section_length > 0, section_length, 1.0))
     b = np.sqrt(np.maximum(end_square, 0.0))
     value_sum = np.where(a + b > 0, a + b, 1.0)
     moments = [length * _mean_of_root(a, b)]

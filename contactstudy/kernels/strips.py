@@ -4,10 +4,10 @@
 function of a loaded rectangle, and ``F'' = k`` the double primitive in X (Love's rectangle integrated once more); terms
 that cancel in the differences are left out. Distances and their sign determine the kernels.
 
-There are two observers: the centre of a uniform cell (eq. (39a)), and the mean over the width of a column, eq. (35) of
-docs/explanation/columns.md, symmetric to the last bit for the normal displacement under a pressure; its integrals are
-mixed differences of F over the edges of the columns. `Grid.observes_means` selects one. A mirrored column lies at the
-sum of the distances from the mirror.
+`Grid.observes_means` selects a displacement at the centre of a uniform cell, eq. (39a), or the mean over the width of
+a column, eq. (35) of docs/explanation/columns.md, symmetric to the last bit for the normal displacement under a
+pressure; its integrals are mixed differences of F over the edges of the columns. A mirrored column lies at the sum of
+the distances from the mirror.
 """
 
 from __future__ import annotations
@@ -232,7 +232,7 @@ class _PairSums:
     edges: FloatArray  # edges of the columns, metres
     y: FloatArray  # offsets half a cell beyond 0, 1, 2, ... cells along y, metres
     total: FloatArray  # (cell, cell, offset): the sum, contiguous along y
-    is_missing: BoolArray  # (cell, cell): pairs below the diagonal and on it that are to be added
+    is_missing: BoolArray  # (cell, cell): pairs below the diagonal and on it without an influence
 
     @classmethod
     def of(cls, edges: FloatArray, y: FloatArray, stored: _PairSums | None) -> _PairSums:
@@ -301,8 +301,8 @@ def _add_to_pairs(
 
 
 def _blocks(is_selected: BoolArray, offset_count: int) -> Iterator[tuple[IntArray, IntArray]]:
-    """Yield blocks of marked pairs below the diagonal and on it."""
+    """Yield the marked pairs below the diagonal and on it in blocks."""
     rows, columns = np.nonzero(np.tril(is_selected))
-    step = max(1, BLOCK_SIZE // offset_count)
-    for start in range(0, rows.size, step):
-        yield rows[start : start + step], columns[start : start + step]
+    pairs_per_block = max(1, BLOCK_SIZE // offset_count)
+    for start in range(0, rows.size, pairs_per_block):
+        yield rows[start : start + pairs_per_block], columns[start : start + pairs_per_block]

@@ -105,7 +105,7 @@ class AxialModes:
 
 
 DECAY_LENGTHS = 14.0
-"""Decay lengths from the corner beyond which a wavenumber along y adds nothing: exp(-14) = 8e-7. Accuracy."""
+"""Decay lengths from the corner beyond which a wavenumber along y contributes nothing: exp(-14) = 8e-7. Accuracy."""
 
 SEPARATE_ENDS = 20.0  # decay lengths beyond which the two ends do not affect each other: exp(-20) = 2e-9. Accuracy.
 
@@ -197,14 +197,14 @@ class SingleMirrorModes(AxialModes):
 
     def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
         """Factor ``T``: the load on a face per normal stress removed."""
-        scaled = np.asarray(kappa * self.length, dtype=np.complex128)
-        decay = np.exp(-scaled)
+        scaled_length = np.asarray(kappa * self.length, dtype=np.complex128)
+        decay = np.exp(-scaled_length)
         if self.parity > 0:
-            return np.asarray(1 / (1 + (1 + scaled) * decay))
-        return np.asarray(1 / (-np.expm1(-scaled) - scaled * decay))
+            return np.asarray(1 / (1 + (1 + scaled_length) * decay))
+        return np.asarray(1 / (-np.expm1(-scaled_length) - scaled_length * decay))
 
     def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
-        """Load on a face per normal stress removed: the opposite half-space removes a part."""
+        """Load on a face per normal stress removed: the opposite half-space removes the rest."""
         return self.face_factor(kappa)
 
     def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -275,11 +275,11 @@ class AuxiliaryLoads(NamedTuple):
         return node_loads[0]._replace(
             lateral=np.concatenate([loads.lateral for loads in node_loads]),
             equivalent=[
-                np.concatenate(parts) for parts in zip(*(loads.equivalent for loads in node_loads), strict=True)
+                np.concatenate(nodes) for nodes in zip(*(loads.equivalent for loads in node_loads), strict=True)
             ],
             depth=np.concatenate([loads.depth for loads in node_loads]),
             counts=[loads.depth.size for loads in node_loads],
-            face_load=[np.concatenate(parts) for parts in zip(*(loads.face_load for loads in node_loads), strict=True)],
+            face_load=[np.concatenate(nodes) for nodes in zip(*(loads.face_load for loads in node_loads), strict=True)],
         )
 
 

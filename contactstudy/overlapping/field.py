@@ -31,16 +31,16 @@ from contactstudy.overlapping.problem import (
 from contactstudy.overlapping.quadrature import graded_interpolation
 from contactstudy.threads import one_blas_thread
 
-POSITION_DIGITS = 12  # digits to which positions over the length are compared for symmetry. Accuracy.
+POSITION_DIGITS = 12  # digits of positions over the length that are compared for symmetry. Rounding.
 
 
 @dataclass(frozen=True, kw_only=True)
 class Harmonics:
     """A field of H under the equivalent load and of V under the face loads, for some wavenumbers along y."""
 
-    of_equivalent_load: Callable[[AuxiliaryLoads, ComplexArray, ComplexArray, FloatArray], FloatArray]
+    equivalent_load_field: Callable[[AuxiliaryLoads, ComplexArray, ComplexArray, FloatArray], FloatArray]
     """From auxiliary loads, cosine, sine (mode, x) and depths to amplitudes (load, component, x, z, node, column)."""
-    of_face_load: Callable[[AuxiliaryLoads, FloatArray, FloatArray], FloatArray]
+    face_load_field: Callable[[AuxiliaryLoads, FloatArray, FloatArray], FloatArray]
     """From auxiliary loads, distances from the end and depths to amplitudes of the same shape."""
     count: int  # number of components
     even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
@@ -110,8 +110,8 @@ def end_fields(
         for subproblem in problem.by_mirror_sign:
             folded_sets = [_FoldedPositions(subproblem, points) for points in point_sets]
             parity_fields = _sum_over_wavenumbers(subproblem, harmonics, folded_sets, reference)
-            for by_load, points, sums in zip(fields, folded_sets, parity_fields, strict=True):
-                by_load |= dict(zip(subproblem.loads, points.unfold(sums, harmonics.odd_along_x), strict=True))
+            for load_fields, points, sums in zip(fields, folded_sets, parity_fields, strict=True):
+                load_fields |= dict(zip(subproblem.loads, points.unfold(sums, harmonics.odd_along_x), strict=True))
     return fields
 
 
@@ -186,7 +186,7 @@ def _panel_amplitudes(
     reference: float,
     solve: Callable[[EndProblem, LateralPanel, float], SolvedPanel | None],
 ) -> Iterator[tuple[LateralPanel, LateralColumns, list[tuple[IntArray, IntArray]], list[FloatArray]]]:
-    """Yield panels, columns, indices of x and z within reach, and amplitudes as `_amplitudes`, per set of points."""
+    """Yield panels, columns, indices of x and z within reach, and amplitudes, per set of points."""
     distances = [points.distance for points in point_sets]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
@@ -201,7 +201,8 @@ def _panel_amplitudes(
         is_near = [panel.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
         indices = [(np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))) for near in is_near]
         axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(point_sets, indices, strict=True)]
-        yield panel, solved_panel.columns, indices, _amplitudes(solved_panel, harmonics, axes, len(problem.loads))
+        amplitudes = _compute_amplitudes(solved_panel, harmonics, axes, len(problem.loads))
+        yield panel, solved_panel.columns, indices, amplitudes
 
 
 class UnitFields(NamedTuple):
@@ -210,7 +211,7 @@ class UnitFields(NamedTuple):
     # The field under a load (cell_x, cell_y) is the sum of ``amplitudes`` times the load times the filters.
 
     amplitudes: FloatArray  # (component, x, node, cell_x, z): amplitudes at the nodes
-    filters: FloatArray  # (component, node, cell_y, y): from a load along y to the part of each node at the positions y
+    filters: FloatArray  # (component, node, cell_y, y): from a load along y to the node's field at the positions y
 
 
 def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, reference: float) -> Iterator[UnitFields]:
@@ -242,7 +243,7 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         yield UnitFields(field_at_nodes.reshape(component_count, x_count, panel.nodes.size, -1, points.z.size), filters)
 
 
-def _amplitudes(
+def _compute_amplitudes(
     solved_panel: SolvedPanel, harmonics: Harmonics, points: list[tuple[FloatArray, FloatArray]], load_count: int
 ) -> list[FloatArray]:
     """Amplitudes of columns at the positions (x, z): arrays (load, component, x, z, wavenumber, column)."""
@@ -254,13 +255,13 @@ def _amplitudes(
         rows, distance = view.positions(np.concatenate([x for x, _ in points]))
         cosine, sine = view.modes.cosine(distance), view.modes.sine(distance)
         for amplitude, (_, z), (start, stop) in zip(amplitudes, points, pairwise(starts), strict=True):
-            in_set = (rows >= start) & (rows < stop)
-            if not in_set.any():
+            is_in_set = (rows >= start) & (rows < stop)
+            if not is_in_set.any():
                 continue
-            field = harmonics.of_equivalent_load(loads, cosine[:, in_set], sine[:, in_set], z)
-            field += harmonics.of_face_load(loads, distance[in_set], z)
+            field = harmonics.equivalent_load_field(loads, cosine[:, is_in_set], sine[:, is_in_set], z)
+            field += harmonics.face_load_field(loads, distance[is_in_set], z)
             set_rows, depths, nodes, indices = np.ix_(
-                rows[in_set] - start, np.arange(z.size), np.arange(columns.nodes.size), view.columns
+                rows[is_in_set] - start, np.arange(z.size), np.arange(columns.nodes.size), view.columns
             )
             amplitude[:, :, set_rows, depths, nodes, indices] = field
     return amplitudes
@@ -310,9 +311,9 @@ def _stress_of_equivalent_load(
 
 def _field_of_face_load(loads: AuxiliaryLoads, along_x: ComplexArray, along_z: ComplexArray) -> FloatArray:
     """Field (load, component, x, z, node, column) of V from waves (component, x, depth) and (depth, z)."""
-    sections = [slice(stop - count, stop) for stop, count in zip(np.cumsum(loads.counts), loads.counts, strict=True)]
+    node_slices = [slice(stop - count, stop) for stop, count in zip(np.cumsum(loads.counts), loads.counts, strict=True)]
     fields = [
-        [real_product(along_x[..., part], along_z[part, :, None] * columns[part, None]) for part in sections]
+        [real_product(along_x[..., node], along_z[node, :, None] * columns[node, None]) for node in node_slices]
         for columns in loads.face_load
     ]
     return np.stack([np.stack(node_fields, axis=-2) for node_fields in fields])
@@ -328,12 +329,12 @@ def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) ->
     kappa, tau, along_z = _face_waves(loads, lateral, z)
     (decay, even_growth), (_, odd_growth) = _sums_over_ends(modes, x, kappa, tau)
     potential = (1 - 2 * nu) * decay - even_growth
-    lateral_part = 2 * nu * decay
+    lateral_term = 2 * nu * decay
     # eqs. (11) and (12) with the waves of eq. (25): xx, yy, zz, xy from cosines along z, xz and yz from sines
     along_x: ComplexArray = np.empty((6, x.size, depth.size), np.complex128)
     np.add(decay, even_growth, out=along_x[0])
-    np.add((lateral / kappa) ** 2 * potential, lateral_part, out=along_x[1])
-    np.add((depth / kappa) ** 2 * potential, lateral_part, out=along_x[2])
+    np.add((lateral / kappa) ** 2 * potential, lateral_term, out=along_x[1])
+    np.add((depth / kappa) ** 2 * potential, lateral_term, out=along_x[2])
     np.multiply(-lateral / kappa, odd_growth, out=along_x[3])
     np.multiply(-1j * depth / kappa, odd_growth, out=along_x[4])
     np.multiply(-1j * lateral * depth / kappa**2, potential, out=along_x[5])
@@ -367,8 +368,8 @@ def _sums_over_ends(
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
-    of_equivalent_load=_stress_of_equivalent_load,
-    of_face_load=_stress_of_face_load,
+    equivalent_load_field=_stress_of_equivalent_load,
+    face_load_field=_stress_of_face_load,
     count=6,
     even_in_y=[0, 1, 2, 4],
     odd_along_x=[3, 4],
@@ -405,8 +406,8 @@ def _displacement_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArr
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``
-    of_equivalent_load=_displacement_of_equivalent_load,
-    of_face_load=_displacement_of_face_load,
+    equivalent_load_field=_displacement_of_equivalent_load,
+    face_load_field=_displacement_of_face_load,
     count=3,
     even_in_y=[0, 2],
     odd_along_x=[0],

@@ -32,7 +32,7 @@ class Band:
 
     system: EquationSet  # equation set at the node
     view: View  # unit loads on the cells along x in the axial modes
-    filters: dict[int, FloatArray]  # (cell_y, y): from loads even (1) or odd (-1) along y to the part of the node at y
+    filters: dict[int, FloatArray]  # (cell_y, y): from loads even (1) or odd (-1) along y to the node's field at y
 
 
 def stack_real_and_imaginary(columns: Any) -> FloatArray:
@@ -130,10 +130,10 @@ class EquivalentOperators(NamedTuple):
 class OverlappingOperators:
     """Operators of the overlapping for loads that mirror images all keep or all reverse."""
 
-    # Equivalent loads grow like a logarithm towards a corner, and are evaluated at a part of a cell from the corner.
+    # Equivalent loads grow like a logarithm towards a corner, and are evaluated a fraction of a cell from it.
     # Loads that only tilt H and V against each other are relative to a reference.
 
-    problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem does not matter
+    problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem is not used
     positions: Points  # positions of the equivalent loads: `x` and `y` on the top, `y` and depths `z` on the ends
     bands: list[Band]  # the equation sets
     reference: float | None  # distance along y at which loads without stress are zero, metres; None without such loads

@@ -25,12 +25,10 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import AxialModes, axial_modes
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 
-NEGLIGIBLE_LOAD = (
-    1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
-)
+NEGLIGIBLE_LOAD = 1e-11  # neglected part of a load, to which fields of loads add up: narrow columns. Rounding.
 
 POLES, BENDING_POLES = 2, 3
-"""Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""
+"""Order of an amplitude's pole at wavenumber 0, eq. (30); 3 if a force along x bends the body, eq. (30a). Physics."""
 
 POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
 """Wavenumber along y, over the smallest length of the problem, below which an amplitude is a sum of poles and as many
@@ -45,7 +43,7 @@ MOMENT_ORDER, MOMENT_PHASE = 16, 10.0
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LateralPanel:
-    """Part of the integral over the wavenumber along y."""
+    """Panel of the integral over the wavenumber along y."""
 
     nodes: FloatArray  # wavenumbers of the equation sets, 1/m
     fine_nodes: FloatArray  # quadrature nodes that follow the phase, and their weights; may be `nodes`
@@ -81,7 +79,7 @@ class LateralPanel:
         return np.cos(phase) * width, np.sin(phase) * width
 
     def filters(self, grid: Grid, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Matrices (node, cell, y) from a load on cells to each node's part at positions `y`, for even, odd loads."""
+        """Matrices (node, cell, y) from even and odd loads on cells to each node's contribution at positions `y`."""
         (load_cosine, load_sine), (cosine, sine) = self.load_waves(grid), self.waves(y)
         interpolation = np.eye(self.nodes.size) if self.interpolation is None else self.interpolation
         even_filters = [(load_cosine * column) @ cosine + (load_sine * column) @ sine for column in interpolation.T]
@@ -155,12 +153,12 @@ def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray],
     """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if the panel needs no column."""
     # With an interpolation the load is represented by few functions of x at few nodes.
     waves, fine = panel.load_waves(grid), panel.fine_nodes.size
-    spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
+    parity_spectra = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
     min_amplitude = NEGLIGIBLE_LOAD * max(
-        (np.abs(amplitude).max() for amplitudes in spectra_of.values() for amplitude in amplitudes), default=0.0
+        (np.abs(amplitude).max() for amplitudes in parity_spectra.values() for amplitude in amplitudes), default=0.0
     )
     along_x, along_y, parities = [], {}, []
-    for parity, spectra in spectra_of.items():
+    for parity, spectra in parity_spectra.items():
         parts = [part for part, spectrum in enumerate(spectra) if np.abs(spectrum).max() > min_amplitude]
         if not parts:
             continue
@@ -168,10 +166,11 @@ def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray],
         if panel.interpolation is None:
             along_nodes = np.eye(fine)[None, :, None, :] * np.eye(len(parts))[:, None, :, None]
         else:
-            along_cells, singular, right = np.linalg.svd(functions.reshape(functions.shape[0], -1), full_matrices=False)
-            rank = int((singular > NEGLIGIBLE_LOAD * singular[0]).sum())
+            matrix = functions.reshape(functions.shape[0], -1)
+            along_cells, singular_values, right_vectors = np.linalg.svd(matrix, full_matrices=False)
+            rank = int((singular_values > NEGLIGIBLE_LOAD * singular_values[0]).sum())
             functions = along_cells[:, None, :rank]
-            factors = (singular[:rank, None] * right[:rank]).reshape(rank, fine, -1)
+            factors = (singular_values[:rank, None] * right_vectors[:rank]).reshape(rank, fine, -1)
             along_nodes = panel.interpolation.T[None, :, None, :] * factors.transpose(2, 0, 1)[:, None]
         along_x.append(functions)
         parities.append(np.full(functions.shape[2], parity))

@@ -77,7 +77,7 @@ class Resolution:
     Raises
     ------
     InvalidInputError
-        If a setting cannot resolve anything.
+        If a setting is out of range.
     """
 
     step: float = 0.22
@@ -157,11 +157,11 @@ def graded_interpolation(x: FloatArray, length: float) -> tuple[FloatArray, Floa
     """Few positions graded towards the ends, and the matrix that interpolates from them to many positions `x`."""
     order, half_length = POSITIONS_PER_PANEL, 0.5 * length if np.isfinite(length) else float(x.max())
     is_near_first = x <= half_length
-    from_end = np.where(is_near_first, x, length - x)
-    is_off_end = from_end > 0
+    end_distances = np.where(is_near_first, x, length - x)
+    is_off_end = end_distances > 0
     if not is_off_end.any():
         return None
-    finest = float(from_end[is_off_end].min())
+    finest = float(end_distances[is_off_end].min())
     if not half_length > finest:
         return None
     panels = max(1, int(np.ceil(np.log2(half_length / finest))))
@@ -169,18 +169,18 @@ def graded_interpolation(x: FloatArray, length: float) -> tuple[FloatArray, Floa
     positions = panel_nodes(edges, order)[0]
     count = positions.size
     end_count = 2 if np.isfinite(length) else 1
-    on_end = np.flatnonzero(~is_off_end)
-    if end_count * count + on_end.size >= x.size:
+    end_indices = np.flatnonzero(~is_off_end)
+    if end_count * count + end_indices.size >= x.size:
         return None
-    matrix = np.zeros((x.size, end_count * count + on_end.size))
-    panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
+    matrix = np.zeros((x.size, end_count * count + end_indices.size))
+    panel = np.clip(np.searchsorted(edges, end_distances) - 1, 0, panels - 1)
     for index in range(panels):
         nodes = slice(index * order, (index + 1) * order)
-        for side, is_on_side in enumerate((is_near_first, ~is_near_first)[:end_count]):
-            points = np.flatnonzero(is_off_end & is_on_side & (panel == index))
-            matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange_weights(
-                positions[nodes], from_end[points]
+        for end, is_near_end in enumerate((is_near_first, ~is_near_first)[:end_count]):
+            points = np.flatnonzero(is_off_end & is_near_end & (panel == index))
+            matrix[points, end * count + nodes.start : end * count + nodes.stop] = lagrange_weights(
+                positions[nodes], end_distances[points]
             )
-    matrix[on_end, end_count * count + np.arange(on_end.size)] = 1.0
-    side_positions = [positions, length - positions] if end_count == 2 else [positions]
-    return np.concatenate([*side_positions, x[on_end]]), matrix
+    matrix[end_indices, end_count * count + np.arange(end_indices.size)] = 1.0
+    all_positions = [positions, length - positions] if end_count == 2 else [positions]
+    return np.concatenate([*all_positions, x[end_indices]]), matrix

@@ -1,6 +1,6 @@
 """Displacements of the top from the free ends, between positions graded towards the ends.
 
-The part of the pressure is the mirrored half-space; the part of the end correction follows from the equation set by
+The displacement is that of the mirrored half-space plus the end correction, which follows from the equation set by
 reciprocity, eqs. (28) to (29b): a symmetric operator, smooth except at the ends. It is sampled at graded positions
 and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Displacements refer to
 the top far away, at ``|y| = reference``, where the curvature under a force along x is zero, too, eqs. (30) and (30a).
@@ -28,11 +28,9 @@ from contactstudy.overlapping.problem import BENDING_POLES, POLE_PANEL_FACTOR, P
 from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded_positions
 
 EXTRA_NODES = 2
-"""Additional wavenumbers along y per panel, against a field: an operator is built once for all loads. Accuracy."""
+"""Wavenumbers along y per panel in addition to those of a field: an operator serves all loads. Accuracy."""
 
-RAY_FACTOR = (
-    1.25  # angle of the axial ray and step along the ray, over the values for a field: no depth ray limits them. Speed.
-)
+RAY_FACTOR = 1.25  # angle of the axial ray and step along it over those of a field with its depth ray. Speed.
 
 CELLS_PER_FINEST = 8  # cells along y over the finest resolved distance from an end with narrow cells along x. Accuracy.
 
@@ -63,7 +61,7 @@ class EndRequest(NamedTuple):
         """Request of a grid that begins at ``x = 0``; cells of any width along x share it."""
         finest = grid.dx
         if not grid.uniform:
-            # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
+            # Next to a loaded end the pressure follows the end correction to some hundredths of the contact's width.
             end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(free_ends.length) else grid.widths[0]
             finest = grid.dy / CELLS_PER_FINEST if end_width <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
@@ -93,7 +91,7 @@ class EndRequest(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class EndKernel:
-    """The ends' part of the displacement between graded positions."""
+    """Displacement between graded positions due to the free ends."""
 
     request: EndRequest
     edges: FloatArray  # edges of panels along x, from end I to mid-length (or over the span), and their Gauss positions
@@ -103,26 +101,26 @@ class EndKernel:
     def add_to(self, kernel: FloatArray, response: Response, cell_edges: FloatArray) -> None:
         """Add the displacement averaged over cells from forces on cells to an array (wavenumber, cell, cell)."""
         widths = np.diff(cell_edges)
-        side_moments = self.moments(cell_edges)
+        end_moments = self.moments(cell_edges)
         for parity, samples in zip(self.request.parities, self.samples[response], strict=True):
             observed_means, loaded_means = (
-                sum_of_ends(side_moments, parity * direction.sign_x) / widths for direction in response
+                sum_of_ends(end_moments, parity * direction.sign_x) / widths for direction in response
             )
-            for total, sampled in zip(kernel, samples, strict=True):
-                total += observed_means.T @ sampled @ loaded_means
+            for total, sample in zip(kernel, samples, strict=True):
+                total += observed_means.T @ sample @ loaded_means
 
     def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
         """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
-        side_moments = [cell_moments(self.edges, self.positions, cell_edges)]
+        end_moments = [cell_moments(self.edges, self.positions, cell_edges)]
         length = self.request.free_ends.length
         if np.isfinite(length):
-            side_moments.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
-        return side_moments
+            end_moments.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
+        return end_moments
 
 
-def sum_of_ends(side_moments: list[FloatArray], sign: int) -> FloatArray:
+def sum_of_ends(end_moments: list[FloatArray], sign: int) -> FloatArray:
     """Sum over both ends for a load whose image is `sign` times the load; with a single end, its value."""
-    return np.asarray(side_moments[0] + sign * side_moments[1]) if len(side_moments) > 1 else side_moments[0]
+    return np.asarray(end_moments[0] + sign * end_moments[1]) if len(end_moments) > 1 else end_moments[0]
 
 
 class PositionWaves:
@@ -131,7 +129,7 @@ class PositionWaves:
     def __init__(self, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> None:
         self.modes, self.positions = modes, positions[positions <= modes.reach]  # positions within reach, metres
         # (mode, position): weighted spectra of unit loads at the positions
-        self.by_load = {
+        self.load_spectra = {
             load: modes.load_weights[:, None] * modes.wave(load, self.positions)
             for load in dict.fromkeys(chain.from_iterable(responses))
         }
@@ -147,10 +145,10 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)  # eq. (28)
         compliance = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
         top_loads = {
-            load: system.spectrum_on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads
+            load: system.spectrum_on_top(system.solve(system.source(load, waves.load_spectra[load]))) for load in loads
         }
         return [np.real(compliance.T @ top_loads[response.load]) for response in responses]
-    sources = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
+    sources = {load: system.source(load, spectrum) for load, spectrum in waves.load_spectra.items()}
     face_loads = {load: system.solve(sources[load]) for load in loads}
     kernels = []
     for displacement, load in responses:
@@ -189,22 +187,22 @@ def end_kernel(request: EndRequest) -> EndKernel:
         )
         responses = [response for response in request.responses if _poles(response) == poles]
         indices = [request.responses.index(response) for response in responses]
-        size, parities = positions.size, len(request.parities)
-        totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
+        position_count, parities = positions.size, len(request.parities)
+        totals = np.zeros((len(responses), parities, request.cells_y + 1, position_count**2))
         for panel in panels:
             cell_factor = request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))
             panel_transforms = {}
             for sign_y in {response.sign_y for response in responses}:
                 transform = transforms[sign_y] @ (panel.wave(offsets, sign_y).T * cell_factor)
                 panel_transforms[sign_y] = transform if panel.interpolation is None else transform @ panel.interpolation
-            samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
-            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest)):
-                count = sampled.shape[-1]
-                samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
+            samples = np.zeros((len(responses), parities, panel.nodes.size, position_count, position_count))
+            for node, sample in enumerate(_sample_panel(request, panel, positions, shortest)):
+                count = sample.shape[-1]
+                samples[:, :, node, :count, :count] = sample[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
                 for sums, parity_samples in zip(total, response_samples, strict=True):
-                    add_product(sums, panel_transforms[response.sign_y], parity_samples.reshape(-1, size**2))
-        shape = (request.cells_y + 1, size, size)
+                    add_product(sums, panel_transforms[response.sign_y], parity_samples.reshape(-1, position_count**2))
+        shape = (request.cells_y + 1, position_count, position_count)
         for response, total in zip(responses, totals, strict=True):
             samples_by_response[response] = [sums.reshape(shape) for sums in total]
     return EndKernel(request, edges, positions, samples_by_response)
@@ -237,7 +235,7 @@ def add_product(total: FloatArray, left_factor: FloatArray, right_factor: FloatA
 
 @dataclass(frozen=True, eq=False)
 class EndCorrection:
-    """The ends' part of the displacements, acting on transforms along y of the zero-padded grid."""
+    """Displacements due to the free ends, from transforms along y of the zero-padded grid."""
 
     parities: tuple[int, ...]  # parities that the ends do not mix; 0 alone for one end
     moments: Mapping[Load, list[FloatArray]]
@@ -252,8 +250,8 @@ class EndCorrection:
         """Per parity, a load's transform on the graded positions: (real or imaginary part, wavenumber, position)."""
         # A product of a kernel with one column at a time is three times faster than with both.
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
-        pairs = np.ascontiguousarray(transform).view(np.float64)
-        folded = zip(self.moments[load], self._fold(pairs, load.sign_x), strict=True)
+        real_values = np.ascontiguousarray(transform).view(np.float64)
+        folded = zip(self.moments[load], self._fold(real_values, load.sign_x), strict=True)
         return [
             np.ascontiguousarray((moments @ parity_values).reshape(len(moments), -1, 2).transpose(2, 1, 0))
             for moments, parity_values in folded
@@ -301,30 +299,30 @@ class EndCorrection:
         return values
 
     def coarsen(self) -> EndCorrection:
-        """Return the correction on cells of twice the size, for a first guess: the lower half of the wavenumbers."""
-        coarse_moments_of: dict[Load, list[FloatArray]] = {}
+        """Return the correction on cells of twice the size, for an initial guess: the lower half of the wavenumbers."""
+        moments_by_load: dict[Load, list[FloatArray]] = {}
         for direction, moments in self.moments.items():
             coarse_moments = []
-            for parity, fine in zip(self.parities, moments, strict=True):
-                if parity and fine.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
-                    fine = np.hstack([fine, parity * direction.sign_x * fine[:, -1:]])
-                coarse_moments.append(fine[:, ::2] + fine[:, 1::2])
-            coarse_moments_of[direction] = coarse_moments
+            for parity, fine_moments in zip(self.parities, moments, strict=True):
+                if parity and fine_moments.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
+                    fine_moments = np.hstack([fine_moments, parity * direction.sign_x * fine_moments[:, -1:]])
+                coarse_moments.append(fine_moments[:, ::2] + fine_moments[:, 1::2])
+            moments_by_load[direction] = coarse_moments
         coarse_kernels = {
             response: [kernel[: (len(kernel) - 1) // 2 + 1] for kernel in kernels]
             for response, kernels in self.kernels.items()
         }
-        return EndCorrection(self.parities, coarse_moments_of, coarse_kernels, 2 * self.cell)
+        return EndCorrection(self.parities, moments_by_load, coarse_kernels, 2 * self.cell)
 
     @classmethod
     def on_grid(cls, grid: Grid, ends: EndKernel) -> EndCorrection:
         """Correction on uniform cells that begin at ``x = 0``."""
         near_count = (grid.cells_x + 1) // 2
-        parities, side_moments = ends.request.parities, ends.moments(grid.x_edges)
+        parities, end_moments = ends.request.parities, ends.moments(grid.x_edges)
         moments = {
             direction: [
                 np.ascontiguousarray(
-                    sum_of_ends(side_moments, parity * direction.sign_x)[:, : near_count if parity else None]
+                    sum_of_ends(end_moments, parity * direction.sign_x)[:, : near_count if parity else None]
                 )
                 for parity in parities
             ]

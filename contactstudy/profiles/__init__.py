@@ -1,7 +1,7 @@
 """Roller profiles: drop of a roller's generatrix below the cylinder (docs/reference/profiles.md).
 
 A profile has one method ``drop(x, length)``: the material removed, in metres and not negative, at the distance `x` from
-mid-length of a roller of the given `length`, fillets included. ``first + second`` is their sum.
+mid-length of a roller of the given `length`, fillets included. ``profile + other`` is the sum of two profiles.
 """
 
 import lazy_loader

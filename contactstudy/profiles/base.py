@@ -16,11 +16,11 @@ from contactstudy.errors import InvalidInputError
 
 POSITIVE_LENGTH = checks.number(checks.positive, "metres")
 NOT_NEGATIVE_LENGTH = checks.number(checks.not_negative, "metres")
-MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner, of a formula over one plus the slope, because of rounding
-CELLS, PARTS, ROUNDS = 1024, 16, 3  # Cells of the search for corners, parts of a cell in each round, and rounds
-MIN_JUMP_RATIO = 3.0  # Minimum ratio of a corner's jump to the changes of the slope on both sides; a bend has 0
-SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length
-MAX_SLOPE = 1.0  # Maximum slope of the profile at a corner's start: logarithmic profiles end with an infinite slope
+MIN_JUMP = 1e-6  # Minimum jump of the slope at a corner, over one plus the slope. Rounding.
+CELLS, SUBCELLS, ROUNDS = 1024, 16, 3  # Search for corners: cells, subcells of a cell in each round, rounds. Accuracy.
+MIN_JUMP_RATIO = 3.0  # Minimum jump at a corner over the changes of the slope on both sides; a bend has 0. Accuracy.
+SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length. Accuracy.
+MAX_SLOPE = 1.0  # Maximum slope of the profile where a corner starts; logarithmic ends are steeper. Physics.
 
 
 @runtime_checkable
@@ -52,31 +52,31 @@ class SlopeJumps(NamedTuple):
 
 @np.errstate(invalid="ignore")  # infinite drops
 def find_slope_jumps(drop: Callable[[FloatArray], FloatArray], length: float) -> SlopeJumps:
-    """Find the corners of a generatrix: divide the cells with jumps of the slope; compare slopes on both sides."""
+    """Find the corners of a generatrix: subdivide cells with jumps of the slope, then compare both sides' slopes."""
     edges = 0.5 * length * np.sin(np.linspace(-0.5, 0.5, CELLS + 1)[1:-1] * np.pi)  # denser at the ends
     starts, steps = edges[:-1], np.diff(edges)
     for _ in range(ROUNDS):
-        steps = steps / PARTS
-        x = starts[:, None] + steps[:, None] * np.arange(-2, PARTS + 3)
+        steps = steps / SUBCELLS
+        x = starts[:, None] + steps[:, None] * np.arange(-2, SUBCELLS + 3)
         slopes = np.diff(drop(x.ravel()).reshape(x.shape)) / steps[:, None]
-        # The third difference is half the jump or more at an end of the corner's part, and 0 on a parabola.
+        # The slopes' third difference is at least half the jump at an end of the corner's subcell, 0 on a parabola.
         has_jump = np.abs(np.diff(slopes, 3)) > 0.5 * MIN_JUMP * (1 + np.abs(slopes[:, :1]))
-        cells, parts = np.nonzero(has_jump[:, :-1] | has_jump[:, 1:])
-        starts, steps = x[cells, parts + 2], steps[cells]
+        cells, subcells = np.nonzero(has_jump[:, :-1] | has_jump[:, 1:])
+        starts, steps = x[cells, subcells + 2], steps[cells]
         if not starts.size:
             return SlopeJumps(starts, starts)
-    is_first = np.diff(starts, prepend=-np.inf) > 1.5 * steps  # of neighbouring parts, which share a corner
-    first, last = starts[is_first], (starts + steps)[np.roll(is_first, -1)]
-    middle, half_width = 0.5 * (first + last), 0.5 * (last - first)
+    is_new_corner = np.diff(starts, prepend=-np.inf) > 1.5 * steps  # neighbouring subcells share a corner
+    low, high = starts[is_new_corner], (starts + steps)[np.roll(is_new_corner, -1)]
+    middle, half_width = 0.5 * (low + high), 0.5 * (high - low)
     x = middle[:, None] + half_width[:, None] * np.array([-8, -4, -2, -1, 1, 2, 4, 8])
     drops = drop(x.ravel()).reshape(x.shape)
     slopes = np.diff(drops) / np.diff(x)
-    left, right = slopes[:, 2], slopes[:, 4]
-    jumps = (4 * (right - left) - slopes[:, 6] + slopes[:, 0]) / 3  # extrapolated to distance 0
-    changes = np.abs(left - slopes[:, 0]) + np.abs(slopes[:, 6] - right)
-    is_corner = np.abs(jumps) > np.maximum(MIN_JUMP * (1 + np.abs(left)), MIN_JUMP_RATIO * changes)
-    differences = (left + right) * half_width - (drops[:, 4] - drops[:, 3])  # of both lines in the middle
-    return SlopeJumps(middle[is_corner] + differences[is_corner] / jumps[is_corner], jumps[is_corner])
+    left_slopes, right_slopes = slopes[:, 2], slopes[:, 4]
+    jumps = (4 * (right_slopes - left_slopes) - slopes[:, 6] + slopes[:, 0]) / 3  # extrapolated to distance 0
+    changes = np.abs(left_slopes - slopes[:, 0]) + np.abs(slopes[:, 6] - right_slopes)
+    is_corner = np.abs(jumps) > np.maximum(MIN_JUMP * (1 + np.abs(left_slopes)), MIN_JUMP_RATIO * changes)
+    tangent_gaps = (left_slopes + right_slopes) * half_width - (drops[:, 4] - drops[:, 3])  # at the midpoint
+    return SlopeJumps(middle[is_corner] + tangent_gaps[is_corner] / jumps[is_corner], jumps[is_corner])
 
 
 class Shape:
@@ -130,12 +130,12 @@ class Shape:
     __radd__ = __add__
 
 
-def _second_interpolation(part: object) -> Any:
+def _second_interpolation(profile: object) -> Any:
     """Second interpolation of a profile, or of profiles in a tuple; None without measured points."""
-    if not isinstance(part, tuple):
-        return part.second_interpolation() if isinstance(part, Shape) else None
-    variants = [_second_interpolation(term) for term in part]
-    return tuple(variant or term for variant, term in zip(variants, part, strict=True)) if any(variants) else None
+    if not isinstance(profile, tuple):
+        return profile.second_interpolation() if isinstance(profile, Shape) else None
+    variants = [_second_interpolation(term) for term in profile]
+    return tuple(variant or term for variant, term in zip(variants, profile, strict=True)) if any(variants) else None
 
 
 def unit_of(profile: object, name: str) -> str:
@@ -179,7 +179,7 @@ def check_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
 
 @dataclass(frozen=True, repr=False)
 class Sum(Shape):
-    """Sum of profiles, usually written ``first + second``: the drops add up.
+    """Sum of profiles, usually written ``profile + other``: the drops add up.
 
     Parameters
     ----------
@@ -263,7 +263,7 @@ class Halves(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         mid_length = np.zeros(1)
         left_drop, right_drop = (float(check_drop(half, mid_length, length)[0]) for half in (self.left, self.right))
-        # Largest step between the two halves at mid-length, metres: about one atom
+        # The largest step between both halves at mid-length is about one atom, in metres.
         if abs(left_drop - right_drop) > 1e-10:
             allowed = "equal drops at mid-length (metres), so that the halves meet"
             raise InvalidInputError("left, right", (left_drop, right_drop), allowed)
@@ -347,9 +347,9 @@ class EffectiveLength(Shape):
             allowed = f"at most the roller's length, {length:g} m"
             raise InvalidInputError("effective_length", self.effective_length, allowed)
         x = np.asarray(x)
-        first, last = self._create_corner(-1), self._create_corner(1)
-        drops = check_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)
-        for side, corner in ((-1, first), (1, last)):
+        low_corner, high_corner = self._create_corner(-1), self._create_corner(1)
+        drops = check_drop(self.profile, np.clip(x, -low_corner.start, high_corner.start), self.effective_length)
+        for side, corner in ((-1, low_corner), (1, high_corner)):
             width = max(half_length - corner.start, 0.0)
             if width == 0:
                 continue
@@ -369,9 +369,9 @@ class EffectiveLength(Shape):
         def drops(*distances: float) -> FloatArray:
             return check_drop(self.profile, side * np.array(distances), length)
 
-        drop, inner = drops(half_length, half_length - step)
+        drop, inner_drop = drops(half_length, half_length - step)
         if np.isfinite(drop):
-            slope = float(np.clip((drop - inner) / step, 0.0, MAX_SLOPE))
+            slope = float(np.clip((drop - inner_drop) / step, 0.0, MAX_SLOPE))
             return Corner(half_length, float(drop), slope / float(np.hypot(1, slope)), 1 / float(np.hypot(1, slope)))
         low, high = 0.0, half_length
         for _ in range(60):  # Bisections for the position of the steepest slope
@@ -387,5 +387,5 @@ class EffectiveLength(Shape):
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m): the profile's, constant over the corners."""
-        half = 0.5 * self.effective_length
-        return local_radius(self.profile, np.clip(x, -half, half), self.effective_length, radius)
+        half_length = 0.5 * self.effective_length
+        return local_radius(self.profile, np.clip(x, -half_length, half_length), self.effective_length, radius)

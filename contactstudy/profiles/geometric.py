@@ -11,7 +11,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import NOT_NEGATIVE_LENGTH, POSITIVE_LENGTH, Shape, SlopeJumps
 
-MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
+MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians. Limit.
 
 
 def _arc_drop(distance: FloatArray, radius: float) -> FloatArray:
@@ -238,11 +238,11 @@ class FullCrown(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         if abs(self.centre) > length / 2:
             raise InvalidInputError("centre", self.centre, f"within half the roller's length, {length / 2:g} m")
-        reach = length / 2 + abs(self.centre)
-        if self.crown_radius < reach:
-            allowed = f"at least {reach:g} m, the distance to the roller's farther end"
+        max_distance = length / 2 + abs(self.centre)
+        if self.crown_radius < max_distance:
+            allowed = f"at least {max_distance:g} m, the distance to the roller's farther end"
             raise InvalidInputError("crown_radius", self.crown_radius, allowed)
-        return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
+        return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), max_distance), self.crown_radius)
 
 
 @dataclass(frozen=True, repr=False)
@@ -292,28 +292,29 @@ class PartialCrown(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        end = (length - self.straight_length) / 2
-        if end < 0:
+        end_length = (length - self.straight_length) / 2
+        if end_length < 0:
             allowed = f"at most the roller's length, {length:g} m"
             raise InvalidInputError("straight_length", self.straight_length, allowed)
-        begin = end - self.dub_length
-        if begin < -1e-9 * length:
-            allowed = f"at most {end:g} m, the length between the straight middle and the end"
+        crown_length = end_length - self.dub_length
+        if crown_length < -1e-9 * length:
+            allowed = f"at most {end_length:g} m, the length between the straight middle and the end"
             raise InvalidInputError("dub_length", self.dub_length, allowed)
-        begin = max(begin, 0.0)
-        if begin > self.crown_radius:
-            raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
-        distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end)
+        crown_length = max(crown_length, 0.0)
+        if crown_length > self.crown_radius:
+            allowed = f"at least {crown_length:g} m, the length of the crown"
+            raise InvalidInputError("crown_radius", self.crown_radius, allowed)
+        distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end_length)
         if self.dub_radius is None:
             return _arc_drop(distance, self.crown_radius)
-        sine = begin / self.crown_radius
-        shift = self.dub_radius * sine
-        if end - begin + shift > self.dub_radius:
-            allowed = f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
+        sine = crown_length / self.crown_radius
+        dub_start = self.dub_radius * sine
+        if end_length - crown_length + dub_start > self.dub_radius:
+            allowed = f"at least {(end_length - crown_length) / (1 - sine):g} m, to reach the roller's end"
             raise InvalidInputError("dub_radius", self.dub_radius, allowed)
-        crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
-        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius)
-        return np.asarray(crown_drop + (dub_drop - _arc_drop(np.array(shift), self.dub_radius)))
+        crown_drop = _arc_drop(np.minimum(distance, crown_length), self.crown_radius)
+        dub_drop = _arc_drop(np.maximum(distance - crown_length, 0.0) + dub_start, self.dub_radius)
+        return np.asarray(crown_drop + (dub_drop - _arc_drop(np.array(dub_start), self.dub_radius)))
 
 
 @dataclass(frozen=True, repr=False)

@@ -14,7 +14,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import NOT_NEGATIVE_LENGTH, POSITIVE_LENGTH, Shape
 
-EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
+EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``. Physics.
 
 
 def logarithmic_drop(amplitude: float, t: FloatArray, factor: float = 1.0) -> FloatArray:
@@ -48,10 +48,10 @@ class Logarithmic(Shape):
         pressure = checks.positive("max_pressure", max_pressure, "Pa")
         radius, modulus = checks.positive("radius", radius, "metres"), checks.positive("modulus", modulus, "Pa")
         half_width = hertz.line_half_width(pressure, radius, modulus)
-        design = {"amplitude": radius * (pressure / modulus) ** 2, "half_width": half_width}
+        design_parameters = {"amplitude": radius * (pressure / modulus) ** 2, "half_width": half_width}
         profile_class: Any = cls
-        names = [entry.name for entry in fields(profile_class) if entry.name in design]
-        profile: Self = profile_class(**{name: design[name] for name in names} | parameters)
+        names = [entry.name for entry in fields(profile_class) if entry.name in design_parameters]
+        profile: Self = profile_class(**{name: design_parameters[name] for name in names} | parameters)
         return profile
 
     @classmethod
@@ -213,10 +213,10 @@ class FujiwaraKawase(Logarithmic):
         half = length / 2
         scale = self.k1 * self.amplitude
         t = np.clip((np.abs(x) - half) / (self.k2 * half) + 1, 0.0, 1.0)
-        residue = np.exp(-self.edge_drop / scale)
-        # two forms of 1 - (1 - residue) t**2: exact near 1, and near 0
+        end = np.exp(-self.edge_drop / scale)
+        # two forms of 1 - (1 - end) t**2: exact near 1, and near 0
         with np.errstate(divide="ignore"):
-            logarithm = np.where(t < 0.5, np.log1p((residue - 1) * t**2), np.log((1 - t) * (1 + t) + residue * t**2))
+            logarithm = np.where(t < 0.5, np.log1p((end - 1) * t**2), np.log((1 - t) * (1 + t) + end * t**2))
         return np.asarray(np.clip(-scale * logarithm, 0.0, self.edge_drop))
 
 
@@ -251,11 +251,11 @@ class IsoCylindrical(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
-        max_crowned = 2.5 * self.diameter  # Length up to which the whole roller is crowned
-        if length <= max_crowned:
+        max_crowned_length = 2.5 * self.diameter  # Length up to which the whole roller is crowned
+        if length <= max_crowned_length:
             return logarithmic_drop(0.00035 * self.diameter, 2 * np.asarray(x) / length)
-        distance = np.maximum(2 * np.abs(x) - (length - max_crowned), 0.0)
-        return logarithmic_drop(0.0005 * self.diameter, distance / max_crowned)
+        distance = np.maximum(2 * np.abs(x) - (length - max_crowned_length), 0.0)
+        return logarithmic_drop(0.0005 * self.diameter, distance / max_crowned_length)
 
 
 @dataclass(frozen=True, repr=False)

@@ -19,8 +19,8 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, POSITIVE_LENGTH, Shape, SlopeJumps
 from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
-ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
-WEIGHT_REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
+ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21). Physics.
+WEIGHT_REACH = 2.2  # Half the weight's support over its width; beyond it is below 3e-7 of its peak. Accuracy.
 
 
 def filter_gaussian(x: FloatArray, values: FloatArray, cutoff: float) -> FloatArray:
@@ -68,7 +68,7 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
     # Least squares fit h = p(x) + a y + b x y + c y**2; the line is y = -(a + b x) / (2 c).
     is_measured = np.isfinite(heights)
     counts = is_measured.sum(axis=1)
-    complete = 2 * counts > y.size
+    is_complete = 2 * counts > y.size
     scale, length = max(float(np.abs(y).max()), 1e-300), max(float(np.abs(x).max()), 1e-300)
     lateral, axial = np.broadcast_to(y / scale, heights.shape), (x / length)[:, None]
 
@@ -78,30 +78,30 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
         return np.asarray((values - means[:, None])[is_measured])
 
     terms = np.stack([subtract_means(term) for term in (lateral, axial * lateral, lateral**2)], axis=1)
-    filled = np.where(is_measured, heights, 0.0)
-    a, b, c = np.linalg.lstsq(terms, subtract_means(filled), rcond=None)[0]
+    filled_heights = np.where(is_measured, heights, 0.0)
+    a, b, c = np.linalg.lstsq(terms, subtract_means(filled_heights), rcond=None)[0]
     slope = a + b * x / length
     ridge_y = -0.5 * scale * slope / c if c < 0 else np.full(x.size, np.nan)
     is_inside = (ridge_y >= y[0]) & (ridge_y <= y[-1])
-    if not is_inside[complete].all() or not complete.any():
+    if not is_inside[is_complete].all() or not is_complete.any():
         allowed = "such that the surface rises to one line across the map and falls again"
         hint = (
             "turn=90 takes the other axis for the roller's; for a roller without curvature across give one line as CSV"
         )
         raise InvalidInputError("height", "a map without the highest line of a roller", allowed, hint)
-    fitted = slope[:, None] * lateral + c * lateral**2
-    means = np.sum(filled - fitted, axis=1, where=is_measured) / np.maximum(counts, 1)
-    return np.where(complete, means - slope**2 / (4 * c), np.nan)
+    fitted_heights = slope[:, None] * lateral + c * lateral**2
+    means = np.sum(filled_heights - fitted_heights, axis=1, where=is_measured) / np.maximum(counts, 1)
+    return np.where(is_complete, means - slope**2 / (4 * c), np.nan)
 
 
-VALUE_NAMES = ("drop", "height")  # Names of values in a file: missing material, or excess material
-# Unresolved corner: minimum change of the slope over the typical change, and over the change this many steps away
+VALUE_NAMES = ("drop", "height")  # names of the values in a file: missing or excess material
+# Unresolved corner: least change of the slope over the typical change, and over that so many steps away. Accuracy.
 CORNER_RATIO, CORNER_STEPS = 4.0, 2
-MIN_POINTS = 5  # Minimum number of measured points
-# Minimum number of steps between points in the cut-off, to resolve the filter's weight
+MIN_POINTS = 5  # Minimum number of measured points. Limit.
+# Minimum number of steps between points in the cut-off, to resolve the filter's weight. Accuracy.
 MIN_STEPS = 5
 # Outlier: minimum difference from the median of five points over the typical bend (median of half the second
-# differences of eleven points, or of all points if larger), and over the height without its outer tenth
+# differences of eleven points, or of all points if larger), and over the height without its outer tenth. Accuracy.
 SPIKE_RATIO, SPIKE_FRACTION = 8.0, 0.02
 
 
@@ -180,8 +180,8 @@ class Measured(Shape):
     def __repr__(self) -> str:
         length = format_quantity(self.positions[-1] - self.positions[0], "m")
         drop = format_quantity(float(self._filtered.max()), "m")
-        filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {format_quantity(self.cutoff, 'm')}"
-        return f"Measured({len(self.positions)} points over {length}, drop up to {drop}{filtered})"
+        cutoff = "" if self.cutoff is None else f", Gaussian filter with cut-off {format_quantity(self.cutoff, 'm')}"
+        return f"Measured({len(self.positions)} points over {length}, drop up to {drop}{cutoff})"
 
     @classmethod
     def from_file(
@@ -250,13 +250,13 @@ class Measured(Shape):
 
     @cached_property
     def _interpolation(self) -> Any:
-        spline = interpolate_with_limited_slopes(self._from_middle, self._filtered)
+        spline = interpolate_with_limited_slopes(self._axial_distances, self._filtered)
         extrema = spline.derivative().roots(discontinuity=False, extrapolate=False)
         spline.c[3] -= min(0.0, float(np.min(spline(extrema[np.isfinite(extrema)]), initial=0.0)))
         return spline
 
     @property
-    def _from_middle(self) -> FloatArray:
+    def _axial_distances(self) -> FloatArray:
         """Positions from mid-length, metres."""
         x = np.asarray(self.positions)
         return np.asarray(x - 0.5 * (x[0] + x[-1]))
@@ -266,7 +266,7 @@ class Measured(Shape):
 
         A filtered profile has no corners: its slope changes over the cut-off.
         """
-        x, drops = self._from_middle, self._filtered
+        x, drops = self._axial_distances, self._filtered
         slope_changes = np.zeros(x.size)
         if self.cutoff is not None:
             return SlopeJumps(x, slope_changes)
@@ -279,8 +279,8 @@ class Measured(Shape):
         is_corner = (
             (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_slope_changes) & (magnitude > MIN_JUMP)
         )
-        sums = np.convolve(slope_changes, np.ones(3), mode="same")
-        return SlopeJumps(x, np.where(is_corner, sums, 0.0))
+        corner_jumps = np.convolve(slope_changes, np.ones(3), mode="same")
+        return SlopeJumps(x, np.where(is_corner, corner_jumps, 0.0))
 
     def second_interpolation(self) -> Measured:
         """Profile through the same points with harmonic-mean slopes."""
@@ -288,13 +288,14 @@ class Measured(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        measured = self.positions[-1] - self.positions[0]
+        measured_length = self.positions[-1] - self.positions[0]
         # Largest difference of a measured length from the roller's, over the latter
-        if abs(measured - length) > 1e-3 * length:
-            value, hint = f"{measured:g} m from first to last", f"it is {'longer' if measured > length else 'shorter'}"
+        if abs(measured_length - length) > 1e-3 * length:
+            value = f"{measured_length:g} m from first to last"
+            hint = f"it is {'longer' if measured_length > length else 'shorter'}"
             raise InvalidInputError("positions", value, f"the roller's length, {length:g} m", hint)
-        clipped = np.clip(x, -measured / 2, measured / 2)
-        return np.asarray(np.maximum(self._interpolation(clipped), 0.0))
+        clipped_x = np.clip(x, -measured_length / 2, measured_length / 2)
+        return np.asarray(np.maximum(self._interpolation(clipped_x), 0.0))
 
 
 class _HarmonicMean(Measured):
@@ -305,7 +306,7 @@ class _HarmonicMean(Measured):
         from scipy.interpolate import PchipInterpolator
 
         with np.errstate(over="ignore"):  # steps of 1e-300 m, harmless in a harmonic mean
-            return PchipInterpolator(self._from_middle, self._filtered)
+            return PchipInterpolator(self._axial_distances, self._filtered)
 
     def second_interpolation(self) -> Measured:
         """Return the profile."""
@@ -323,16 +324,16 @@ def interpolate_with_limited_slopes(x: FloatArray, drops: FloatArray) -> Any:
     slopes = np.append(secants - bends[:-1] * steps, secants[-1] + bends[-1] * steps[-1])
     shared_bends = minmod(bends[:-1], bends[1:])
     left_slopes, right_slopes = secants + shared_bends * steps, secants - shared_bends * steps
-    quadratic = np.concatenate([right_slopes[:1], minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
-    monotone = np.concatenate([secants[:1], minmod(secants[:-1], secants[1:]), secants[-1:]])
-    limits = np.copysign(np.maximum(3 * np.abs(monotone), 1.5 * np.abs(quadratic)), quadratic)
-    return CubicHermiteSpline(x, drops, minmod(slopes, np.where(quadratic == 0, 0.0, limits)))
+    quadratic_slopes = np.concatenate([right_slopes[:1], minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
+    monotone_slopes = np.concatenate([secants[:1], minmod(secants[:-1], secants[1:]), secants[-1:]])
+    limits = np.copysign(np.maximum(3 * np.abs(monotone_slopes), 1.5 * np.abs(quadratic_slopes)), quadratic_slopes)
+    return CubicHermiteSpline(x, drops, minmod(slopes, np.where(quadratic_slopes == 0, 0.0, limits)))
 
 
-def minmod(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Return the value closer to 0 where both signs agree; 0 elsewhere."""
-    smaller = np.minimum(np.abs(first), np.abs(second))
-    return np.asarray(np.where(first * second > 0, np.copysign(smaller, first), 0.0))
+def minmod(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return of `a` and `b` the value closer to 0 where both signs agree; 0 elsewhere."""
+    smaller = np.minimum(np.abs(a), np.abs(b))
+    return np.asarray(np.where(a * b > 0, np.copysign(smaller, a), 0.0))
 
 
 def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = None) -> None:

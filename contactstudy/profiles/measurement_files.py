@@ -26,7 +26,7 @@ from contactstudy import checks
 from contactstudy.checks import UNIT_SIZES, FloatArray
 from contactstudy.errors import ContactStudyError, InvalidInputError
 
-# Size of a file with measurements: a height map of ten million points.
+# Largest size of a file, bytes: a height map of ten million points. Limit.
 MAX_BYTES = 500_000_000
 
 BINARY_BYTES = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a\x1b"))  # Bytes outside text of single-byte encodings
@@ -127,7 +127,7 @@ NUMERAL = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)
 
 # A number with a possible comma between thousands
 THOUSANDS_PATTERN = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
-QUOTE_LENGTH = 24
+QUOTE_LENGTH = 24  # Largest number of characters of a file in a message. Limit.
 
 
 def truncate(text: str) -> str:
@@ -150,9 +150,9 @@ class NumberParser:
         if not field.strip():
             return np.nan
         field_name = f"line {line}, {name}"
-        with_point = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
+        numeral = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
         # Python's float also accepts underscores and the digits of all scripts.
-        if not NUMERAL.fullmatch(with_point):
+        if not NUMERAL.fullmatch(numeral):
             allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
             raise InvalidInputError(field_name, truncate(field), allowed)
         if "," in field:
@@ -160,7 +160,7 @@ class NumberParser:
             self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS_PATTERN.fullmatch(field)
         elif "." in field:
             self._marked_fields.setdefault(".", (field_name, field))
-        return float(with_point)
+        return float(numeral)
 
     def check(self) -> None:
         """Raise if numbers with commas are ambiguous."""
@@ -168,18 +168,18 @@ class NumberParser:
             return
         field_name, field = self._marked_fields[","]
         if "." in self._marked_fields:
-            name_with_point, with_point = self._marked_fields["."]
-            reason = f"{name_with_point} is {truncate(with_point)!r}"
+            point_name, point_field = self._marked_fields["."]
+            reason = f"{point_name} is {truncate(point_field)!r}"
             raise InvalidInputError(field_name, truncate(field), "a number with the decimal mark of all others", reason)
         if not self._is_decimal_comma:
             hint = "a decimal comma, or a comma between thousands: write decimal points"
             raise InvalidInputError(field_name, truncate(field), "a number of one meaning", hint)
 
 
-MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps
+MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps. Limit.
 # Messages quote only names of columns: the file may be foreign.
 NAME_PATTERN = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
-MAX_NAMES = 8
+MAX_NAMES = 8  # Largest number of names in a message. Limit.
 
 
 def read_netcdf(path: Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
@@ -208,7 +208,7 @@ def unit_in_metres(name: str, unit: object) -> float:
     text = str(unit).strip() if unit else ""
     if text not in UNIT_SIZES["m"]:
         hint = f"a header has the unit in brackets, such as {name} [mm]; netCDF in the attribute units"
-        if any("\udc80" <= sign <= "\udcff" for sign in text):  # surrogates of an unknown encoding
+        if any("\udc80" <= character <= "\udcff" for character in text):  # surrogates of an unknown encoding
             hint = "the encoding is unknown: save the file as UTF-8 (in Excel 'CSV UTF-8'), or write um"
         raise InvalidInputError(f"unit of {name}", text or None, f"one of {', '.join(UNIT_SIZES['m'])}", hint)
     return UNIT_SIZES["m"][text]
@@ -306,14 +306,13 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
 
 # Endings of files without instrument formats: columns with units, and netCDF
 TEXT_ENDINGS = ("", ".csv", ".txt", ".tsv", ".dat", ".nc")
-ANGLES = (0, 90, 180, 270)
-
-MAX_XML = 100_000_000  # Largest XML entry of an x3p file, bytes unpacked: a surface as text of some million points
+ANGLES = (0, 90, 180, 270)  # Degrees by which heights can be turned. Limit.
+MAX_XML = 100_000_000  # Largest XML entry of an x3p file, unpacked bytes: some million points as text. Limit.
 
 # Without a handler the reader igor2 would print a foreign file on the screen.
 logging.getLogger("igor2").addHandler(logging.NullHandler())
 
-GRID_TOLERANCE = 1e-6  # Distance of points from the lines of a grid, over a step
+GRID_TOLERANCE = 1e-6  # Distance of points from the lines of a grid, over a step. Rounding.
 
 
 class Heights(NamedTuple):
@@ -343,25 +342,25 @@ def _arrange_points(columns: dict[str, FloatArray]) -> Heights:
     points = pd.DataFrame(columns)
     if (repeated := points.duplicated(["x", "y"])).any():
         x, y = points.loc[repeated, ["x", "y"]].iloc[0]
-        number = ((points["x"] == x) & (points["y"] == y)).sum()
-        raise InvalidInputError("height", f"{number} values at x = {x:g} m, y = {y:g} m", "one value at every point")
+        count = ((points["x"] == x) & (points["y"] == y)).sum()
+        raise InvalidInputError("height", f"{count} values at x = {x:g} m, y = {y:g} m", "one value at every point")
     heights = points.pivot(index="x", columns="y", values="height")
     return Heights(heights.index.to_numpy(), heights.columns.to_numpy(), heights.to_numpy())
 
 
 def read_heights(path: Path) -> Heights:
     """Read positions and heights of an x3p file or a format of SurfaceTopography."""
-    x3p = path.suffix.lower() == ".x3p"
-    package = "x3pio" if x3p else "SurfaceTopography"
+    is_x3p = path.suffix.lower() == ".x3p"
+    package = "x3pio" if is_x3p else "SurfaceTopography"
     if find_spec(package) is None:
-        if not x3p and (description := describe_foreign_file(path)):
+        if not is_x3p and (description := describe_foreign_file(path)):
             raise _path_error(path, READABLE_FILES, f"it is {description}")
         raise ContactStudyError(
             f"reading {path} needs {package}, from the extra `measured`: "
             'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
         )
     check_regular_file(path, "measured")
-    heights = _read_x3p(path) if x3p else _read_topography(path)
+    heights = _read_x3p(path) if is_x3p else _read_topography(path)
     if heights.y is not None and heights.y.size == 1:
         return Heights(heights.x, None, heights.heights[:, 0])
     return heights

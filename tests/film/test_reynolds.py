@@ -42,10 +42,10 @@ def test_flow_derivatives_agree_with_differences():
     derivatives = flow(height, pressure)
     for cell in range(5):
         change = step * (np.arange(5) == cell)
-        by_film = (flow(height + change, pressure).flow - flow(height - change, pressure).flow) / (2 * step)
-        by_pressure = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
-        assert derivatives.by_film.toarray()[:, cell] == pytest.approx(by_film, rel=1e-6, abs=1e-9)
-        assert derivatives.by_pressure.toarray()[:, cell] == pytest.approx(by_pressure, rel=1e-6, abs=1e-9)
+        film_jacobian = (flow(height + change, pressure).flow - flow(height - change, pressure).flow) / (2 * step)
+        pressure_jacobian = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
+        assert derivatives.film_jacobian.toarray()[:, cell] == pytest.approx(film_jacobian, rel=1e-6, abs=1e-9)
+        assert derivatives.pressure_jacobian.toarray()[:, cell] == pytest.approx(pressure_jacobian, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("law", ["barus", "roelands"])
@@ -59,7 +59,7 @@ def test_flow_rises_with_the_pressure_step(law):
     def flow(pressure):
         reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
         pressure_flow = faces.conduct_flow(fluid.flow_number, reduced, height)
-        assert pressure_flow.by_pressure.toarray()[1, 0] >= 0
+        assert pressure_flow.pressure_jacobian.toarray()[1, 0] >= 0
         return float(pressure_flow.flow[1])
 
     flows = [flow(pressure) for pressure in (0.1, 0.5, 1.0, 2.0, 5.0)]

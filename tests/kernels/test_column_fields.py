@@ -492,9 +492,9 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
         computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     baseline, variant = computed
-    assert len({tuple(part.depth_indices.size for part in columns.parts) for columns in computed}) == 1
+    assert len({tuple(part.depth_indices.size for part in columns.groups) for columns in computed}) == 1
     for jumps_of_parts, scaled_jumps_of_parts in zip(baseline.jumps, variant.jumps, strict=True):
-        for part, jumps, scaled_jumps in zip(baseline.parts, jumps_of_parts, scaled_jumps_of_parts, strict=True):
+        for part, jumps, scaled_jumps in zip(baseline.groups, jumps_of_parts, scaled_jumps_of_parts, strict=True):
             assert [item.edges.size for item in jumps] == [item.edges.size for item in scaled_jumps]
             for item, scaled in () if part.radius else zip(jumps, scaled_jumps, strict=True):
                 assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)

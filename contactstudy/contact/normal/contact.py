@@ -21,11 +21,11 @@ from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
-CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
-OPEN_TOLERANCES = 10.0  # least gap that counts as open, over the tolerance times the displacement's variation
+CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance of its steps. Accuracy.
+OPEN_TOLERANCES = 10.0  # least open gap over the tolerance times the displacement's variation. Accuracy.
 MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
 INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
-SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of a body's middle over the window. Accuracy.
+SYMMETRY_ROUNDING = 1e-10  # asymmetry of a gap over the largest gap, of a body's middle over the window. Rounding.
 
 
 @dataclass(frozen=True)
@@ -70,17 +70,17 @@ class Shape(NamedTuple):
             centres.append(self.counterbody.start + 0.5 * sum(self.counterbody.body.extent))
         if position is not None:
             centres.append(position)
-        even_x = self.grid.is_symmetric and all(
+        is_even_x = self.grid.is_symmetric and all(
             np.isnan(centre) or abs(centre - 0.5 * (low + high)) < rounding for centre in centres
         )
         gap = np.where(np.isfinite(self.gap.values), self.gap.values, -1.0)
         return [
             axis
-            for axis, even in enumerate((even_x, not self.coupled_friction))
-            if even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
+            for axis, is_even in enumerate((is_even_x, not self.coupled_friction))
+            if is_even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
         ]
 
-    def find_resultant(self, pressure: FloatArray) -> float:
+    def find_load_position(self, pressure: FloatArray) -> float:
         """Position x of a pressure's resultant, metres."""
         forces = (self.grid.weights * pressure).sum(axis=1)
         return float(forces @ self.grid.x / max(forces.sum(), np.finfo(float).tiny))
@@ -88,17 +88,17 @@ class Shape(NamedTuple):
     def line_motions(self, pressure: FloatArray, position: float) -> LineMotions:
         """Motions of the reference lines under a pressure; `level` is taken below a position x."""
         grid, counterbody, loads = self.grid, self.counterbody, self.loads(pressure)
-        first = line_motion(self.body, grid, loads, position)
+        body_motion = line_motion(self.body, grid, loads, position)
         if counterbody is None:
-            return LineMotions(first, first)
+            return LineMotions(body_motion, body_motion)
         reaction = {
             load: (1 if load is Load.NORMAL else -1) * counterbody.transfer_load(grid, cells)
             for load, cells in loads.items()
         }
         start = counterbody.start
-        second = line_motion(counterbody.body, counterbody.grid_on_body(grid), reaction, position - start)
-        total = RigidMotion(first.level + second.level - second.tilt * start, first.tilt + second.tilt)
-        return LineMotions(first, total)
+        reaction_motion = line_motion(counterbody.body, counterbody.grid_on_body(grid), reaction, position - start)
+        level = body_motion.level + reaction_motion.level - reaction_motion.tilt * start
+        return LineMotions(body_motion, RigidMotion(level, body_motion.tilt + reaction_motion.tilt))
 
     def loads(self, pressure: FloatArray) -> dict[Load, FloatArray]:
         """Map a pressure and its coupled friction to loads."""
@@ -138,7 +138,7 @@ class Contact:
     @property
     def load_position(self) -> float:
         """Position x of the pressure's resultant, metres."""
-        return self.shape.find_resultant(self.pressure)
+        return self.shape.find_load_position(self.pressure)
 
     def warn_unless_converged(self) -> None:
         """Warn with the violations of the conditions, if the iteration did not converge."""
@@ -155,7 +155,7 @@ class Contact:
 
 
 def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) -> Contact:
-    """Solve a contact, optionally from a first guess of the pressure."""
+    """Solve a contact, optionally from an initial guess of the pressure."""
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate, motions = _iterate(shape, settings, start)
@@ -166,20 +166,20 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
             pressure = 0.5 * (pressure + np.flip(pressure, axis))
         loads = shape.loads(pressure)
         displacement = _body_operator(shape)(loads)
-        relative = displacement if shape.counterbody is None else contact_operator(shape)(loads)
+        relative_displacement = displacement if shape.counterbody is None else contact_operator(shape)(loads)
     check_window(shape.body, pressure)
     prescribed = shape.prescribed
-    height = clearance + relative - motions.total.height(grid.x)
+    height = clearance + relative_displacement - motions.total.height(grid.x)
     tilt = 0.0
     if prescribed.load_position is not None:
         tilt = iterate.motion[1] / prescribed.max_arm(grid) - motions.total.tilt
         height = height - tilt * (grid.x[:, None] - prescribed.load_position)
-    approach = prescribed.lowering
+    approach = prescribed.approach_or_zero
     if prescribed.approach is None:
         forces = grid.weights * pressure
         approach = float((forces * np.where(pressure > 0, height, 0.0)).sum() / forces.sum())
     opening = height - approach  # eq. (33)
-    certificate = certify(shape, pressure, opening, relative, settings.tolerance)
+    certificate = certify(shape, pressure, opening, relative_displacement, settings.tolerance)
     return Contact(
         shape=shape,
         settings=settings,
@@ -231,18 +231,18 @@ def iterate_contact(
     # adds the motion of the reference lines to the gap.
     grid, prescribed, tolerance = shape.grid, shape.prescribed, settings.tolerance
     bodies = [shape.body] if shape.counterbody is None else [shape.body, shape.counterbody.body]
-    finite = any(np.isfinite(body.depth) for body in bodies)
-    fixed = (finite and prescribed.approach is not None, finite and prescribed.load_position is None)
+    has_line = any(np.isfinite(body.depth) for body in bodies)
+    is_prescribed = (has_line and prescribed.approach is not None, has_line and prescribed.load_position is None)
     low, high = grid.x_range
     weights = np.array([1.0, high - low])
-    trial, previous = np.zeros(2), np.zeros(2)
+    trial_motion, previous_residual = np.zeros(2), np.zeros(2)
     relaxation, applications = 1.0, 0
-    guess, error = start, 1.0 if any(fixed) else 0.0
+    guess, error = start, 1.0 if any(is_prescribed) else 0.0
     for round_index in range(MAX_ROUNDS):
         inner_tolerance = max(tolerance, INNER_TOLERANCE * error)
         problem = ContactProblem(
             grid=grid,
-            gap=shape.gap.values - prescribed.lowering - RigidMotion(*trial).height(grid.x),
+            gap=shape.gap.values - prescribed.approach_or_zero - RigidMotion(*trial_motion).height(grid.x),
             resultants=prescribed.resultants(grid),
             friction=shape.coupled_friction,
             tolerance=inner_tolerance,
@@ -251,17 +251,17 @@ def iterate_contact(
         iterate = solve_problem(operator, problem, guess)
         applications += iterate.applications
         guess = iterate.pressure
-        motions = shape.line_motions(guess, shape.find_resultant(guess))
+        motions = shape.line_motions(guess, shape.find_load_position(guess))
         motion = np.array(motions.total)
-        residual = np.where(fixed, motion - trial, 0.0)
+        residual = np.where(is_prescribed, motion - trial_motion, 0.0)
         motion_norm = float(np.linalg.norm(weights * motion))
         error = float(np.linalg.norm(weights * residual)) / motion_norm if motion_norm else 0.0
         if max(error, inner_tolerance) <= tolerance:
             return replace(iterate, applications=applications), motions
-        change = weights * (residual - previous)
+        change = weights * (residual - previous_residual)
         if round_index and change.any():
-            relaxation *= -float(weights * previous @ change) / float(change @ change)
-        trial, previous = trial + relaxation * residual, residual
+            relaxation *= -float(weights * previous_residual @ change) / float(change @ change)
+        trial_motion, previous_residual = trial_motion + relaxation * residual, residual
     return replace(iterate, applications=applications, converged=False), motions
 
 

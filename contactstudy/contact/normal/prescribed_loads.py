@@ -34,13 +34,13 @@ class PrescribedLoad(NamedTuple):
         if (load is None) == (approach is None):
             raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
         if approach is not None:
-            lowering = checks.finite("approach", approach, "metres")
+            approach_m = checks.finite("approach", approach, "metres")
             if position is not None:
                 allowed = "None where the approach is prescribed"
                 raise InvalidInputError("load_position", position, allowed, "prescribe the load instead")
-            if lowering <= gap.min():
-                raise InvalidInputError("approach", lowering, f"more than the least gap, {gap.min():g} m")
-            return PrescribedLoad(approach=lowering)
+            if approach_m <= gap.min():
+                raise InvalidInputError("approach", approach_m, f"more than the least gap, {gap.min():g} m")
+            return PrescribedLoad(approach=approach_m)
         load_n = checks.positive("load", load, "N")
         if position is None:
             return PrescribedLoad(load_n)
@@ -52,7 +52,7 @@ class PrescribedLoad(NamedTuple):
         return PrescribedLoad(load_n, position_m)
 
     @property
-    def lowering(self) -> float:
+    def approach_or_zero(self) -> float:
         """Prescribed displacement of the shape, metres; 0 under a prescribed load."""
         return 0.0 if self.approach is None else self.approach
 
@@ -109,11 +109,11 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
     """Motion of a body's reference line under loads (Pa): least-squares slope, and displacement below a position."""
     if not np.isfinite(body.depth):
         return RigidMotion()
-    columns, onto_columns = distant_columns(grid, body.depth)
+    columns, column_matrix = distant_columns(grid, body.depth)
     displacement: FloatArray = np.zeros(1)
     for load, cells in loads.items():
         x, weights, influence = reference_line(body, columns, load)
-        displacement = displacement + np.tensordot(influence, onto_columns @ cells, axes=2)
+        displacement = displacement + np.tensordot(influence, column_matrix @ cells, axes=2)
     arm = x - np.average(x, weights=weights)
     tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
     position_on_line = np.clip([position], *np.clip(body.extent, *grid.x_range))

@@ -2,8 +2,8 @@
 
 The conjugate gradients follow I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with a preconditioner (J. Zhao,
 E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375), an update of the gap along the search direction
-while the contact area does not change, and a safeguard against cells that enter at once and overshoot. The first guess
-stems from coarser cells.
+while the contact area does not change, and a safeguard against cells that enter at once and overshoot. The initial
+guess is a solution on coarser cells.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from contactstudy.kernels.load import Load
 
 Operator = Callable[[FloatArray], FloatArray]
 
-ENTRY_OVERLAP = 0.1  # overlap from which on a cell enters the contact, over the tolerated violation. Speed.
+ENTRY_OVERLAP = 0.1  # least overlap of a cell that enters the contact, over the tolerated violation. Speed.
 MIN_ENTRY_PRESSURE = 1e-12  # least pressure of a cell that enters the contact, over the largest pressure. Speed.
 MIN_LINEAR_FACTOR = 0.1  # least value of the linear factor in `restore`, over its constant: positive. Speed.
-ADDED_PRESSURE = 0.1  # pressure, over the largest, added to all cells if one side of the load has none. Speed.
+ADDED_PRESSURE = 0.1  # over the largest pressure: added to all cells if one side of the load has none. Speed.
 MAX_EXPONENT = 1e4  # largest slope of the exponential factor in `restore`. Speed.
 
 
@@ -49,29 +49,29 @@ class Resultants:
             return pressure
         if self.lever is None:
             return np.asarray(pressure * (self.total / pressure.sum()))
-        line = pressure.sum(axis=1)
+        axial_sums = pressure.sum(axis=1)
         arm = self.lever[:, 0]
-        sums = [float((line * arm**power).sum()) for power in (0, 1, 2)]
+        sums = [float((axial_sums * arm**power).sum()) for power in (0, 1, 2)]
         # One column of cells lacks a second moment: the factor restores the sum only.
         if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
             return np.asarray(pressure * (self.total / sums[0]))
         constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
         factor = constant + slope * self.lever
         if factor.min() < MIN_LINEAR_FACTOR * constant:
-            factor = self._exponential_factor(line, arm)
+            factor = self._exponential_factor(axial_sums, arm)
         return np.asarray(pressure * factor)
 
-    def _exponential_factor(self, line: FloatArray, arm: FloatArray) -> FloatArray:
+    def _exponential_factor(self, axial_sums: FloatArray, arm: FloatArray) -> FloatArray:
         """Positive factor ``C exp(s arm)`` for both resultants; without pressure on both sides, for the sum alone."""
         assert self.total is not None
-        loaded = line > 0
-        line, lever = line[loaded], arm[loaded]
+        is_loaded = axial_sums > 0
+        axial_sums, lever = axial_sums[is_loaded], arm[is_loaded]
         slope = 0.0
         if lever.min() < 0 < lever.max():
 
             def moment(slope: float) -> float:
-                weighted = line * np.exp(slope * lever - (slope * lever).max())
-                return float((weighted * lever).sum() / weighted.sum())
+                scaled_sums = axial_sums * np.exp(slope * lever - (slope * lever).max())
+                return float((scaled_sums * lever).sum() / scaled_sums.sum())
 
             bound = 1.0
             while bound < MAX_EXPONENT and moment(-bound) * moment(bound) > 0:
@@ -81,7 +81,7 @@ class Resultants:
 
                 slope = float(brentq(moment, -bound, bound, xtol=1e-15, rtol=1e-14))
         factor = np.exp(slope * arm - (slope * lever).max())
-        return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
+        return np.asarray((factor * (self.total / float((axial_sums * factor[is_loaded]).sum())))[:, None])
 
     def position_error(self, pressure: FloatArray) -> float:
         """Distance of the pressure's resultant from its prescribed position, over the largest arm."""
@@ -109,30 +109,31 @@ def solve_complementarity(
     max_iterations: int,
 ) -> ContactIterate:
     """Solve for a pressure ``p >= 0`` with ``g = gap + operator(p) - motion >= 0``, ``p g = 0`` and the resultants."""
-    state = _IterationState(operator, preconditioner, gap, resultants, start)
+    iteration = _IterationState(operator, preconditioner, gap, resultants, start)
     converged = False
     for _ in range(max_iterations):
-        opening = state.compute_opening()
-        residual = np.where(state.contact, opening, 0.0)
-        violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
-        scale = np.ptp(state.displacement)
-        step, response, curvature = state.search_step(residual)
-        trial = state.pressure - step * state.direction
-        change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
-        closing = ~state.contact & (opening < -ENTRY_OVERLAP * tolerance * scale)
-        if (trial < 0).any() or closing.any():
-            state.change_area(trial, closing, opening, step, response)
+        opening = iteration.compute_opening()
+        residual = np.where(iteration.contact, opening, 0.0)
+        violation = np.where(iteration.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
+        scale = np.ptp(iteration.displacement)
+        step, response, curvature = iteration.search_step(residual)
+        trial = iteration.pressure - step * iteration.direction
+        change = abs(step) * float(np.abs(iteration.direction).sum() / iteration.pressure.sum())
+        is_entering = ~iteration.contact & (opening < -ENTRY_OVERLAP * tolerance * scale)
+        if (trial < 0).any() or is_entering.any():
+            iteration.change_area(trial, is_entering, opening, step, response)
         else:
-            state.pressure, state.displacement, state.area_changed = trial, state.displacement - step * response, False
+            iteration.pressure, iteration.area_changed = trial, False
+            iteration.displacement = iteration.displacement - step * response
             converges = violation <= tolerance * scale and change <= tolerance
-            if converges and resultants.position_error(state.pressure) <= tolerance:
+            if converges and resultants.position_error(iteration.pressure) <= tolerance:
                 converged = True
                 break
         if curvature <= 0:
             break
-    pressure = resultants.restore(state.pressure)
-    motion = tuple(float(component) for component in state.motion)
-    return ContactIterate(pressure=pressure, motion=motion, applications=state.applications, converged=converged)
+    pressure = resultants.restore(iteration.pressure)
+    motion = tuple(float(component) for component in iteration.motion)
+    return ContactIterate(pressure=pressure, motion=motion, applications=iteration.applications, converged=converged)
 
 
 class _IterationState:
@@ -142,7 +143,7 @@ class _IterationState:
         self, operator: Operator, preconditioner: Operator, gap: FloatArray, resultants: Resultants, start: FloatArray
     ) -> None:
         self._operator, self._preconditioner = operator, preconditioner
-        self._gap, self._possible = gap, np.isfinite(gap)
+        self._gap, self._can_touch = gap, np.isfinite(gap)
         self._resultants, self._motions = resultants, resultants.motions
         self.applications = 0
         self.pressure = resultants.restore(self._balance_sides(start))
@@ -165,7 +166,7 @@ class _IterationState:
     def _scale_guess(self) -> None:
         """Scale the guess so that the work of the prescribed approach equals the work of the displacement."""
         gap = self._gap
-        work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
+        work = -float((self.pressure * np.where(self._can_touch, gap, 0.0)).sum())
         if work <= 0:  # the guess lies outside the shape's overlap
             self.pressure = np.where(gap < 0, 1.0, 0.0)
             self.displacement, work = self._apply(self.pressure), -float(gap[gap < 0].sum())
@@ -180,7 +181,7 @@ class _IterationState:
         arms = lever[pressure.any(axis=1)]
         if arms.min() < 0 < arms.max():
             return pressure
-        return pressure + np.where(self._possible, ADDED_PRESSURE * pressure.max(), 0.0)
+        return pressure + np.where(self._can_touch, ADDED_PRESSURE * pressure.max(), 0.0)
 
     def compute_opening(self) -> FloatArray:
         """Compute the gap after the rigid motion for which the descent keeps the prescribed resultants."""
@@ -190,7 +191,7 @@ class _IterationState:
                 np.where(self.contact, self._preconditioner(np.where(self.contact, mode, 0.0)), 0.0) for mode in motions
             ]
             self._gram = np.array([[float((weight * mode).sum()) for mode in motions] for weight in self._weights])
-        height = np.where(self._possible, self._gap + self.displacement, np.inf)
+        height = np.where(self._can_touch, self._gap + self.displacement, np.inf)
         contact_height = np.where(self.contact, height, 0.0)
         if motions:
             weighted_heights = [float((weight * contact_height).sum()) for weight in self._weights]
@@ -218,19 +219,19 @@ class _IterationState:
         return step, displacement, curvature
 
     def change_area(
-        self, trial: FloatArray, entering: BoolArray, opening: FloatArray, step: float, response: FloatArray
+        self, trial: FloatArray, is_entering: BoolArray, opening: FloatArray, step: float, response: FloatArray
     ) -> None:
         """Remove cells with negative pressure from the contact, and add cells that overlap."""
         trial[trial < 0] = 0.0
-        if entering.any():
+        if is_entering.any():
             # As in Polonsky and Keer, the pressure of an entering cell is a step along its overlap.
-            scaled = self._preconditioner(np.where(entering, opening, 0.0))
-            trial[entering] = np.maximum(-scaled[entering], MIN_ENTRY_PRESSURE * trial.max())
+            scaled_opening = self._preconditioner(np.where(is_entering, opening, 0.0))
+            trial[is_entering] = np.maximum(-scaled_opening[is_entering], MIN_ENTRY_PRESSURE * trial.max())
         trial = self._resultants.restore(self._balance_sides(trial))
         displacement = self._apply(trial)
         fraction = 1.0
         # Only entering cells may overshoot; cells leave the contact finitely often.
-        if entering.any():
+        if is_entering.any():
             fraction = _descent_fraction(trial - self.pressure, displacement - self.displacement, opening)
         if fraction > 0:
             if fraction < 1.0:
@@ -245,11 +246,11 @@ class _IterationState:
     def _step_to_border(self, step: float, response: FloatArray) -> None:
         """Step along the search direction until the first cell leaves the contact; the resultants do not change."""
         pressure_change = -step * self.direction
-        falling = self.contact & (pressure_change < 0)
-        steps_to_zero = self.pressure[falling] / -pressure_change[falling]
+        is_falling = self.contact & (pressure_change < 0)
+        steps_to_zero = self.pressure[is_falling] / -pressure_change[is_falling]
         fraction = min(1.0, float(steps_to_zero.min(initial=1.0)))
         pressure = self.pressure + fraction * pressure_change
-        pressure[falling] = np.where(steps_to_zero <= fraction, 0.0, np.maximum(pressure[falling], 0.0))
+        pressure[is_falling] = np.where(steps_to_zero <= fraction, 0.0, np.maximum(pressure[is_falling], 0.0))
         self.pressure, self.displacement = pressure, self.displacement - fraction * step * response
 
 
@@ -265,9 +266,9 @@ def _descent_fraction(pressure_change: FloatArray, displacement_change: FloatArr
 MAX_COUPLED_ROUNDS = 60  # largest number of rounds of a coupled contact. Speed.
 ROUND_ACCURACY = 0.03  # tolerance of a round over the change in the preceding round. Speed.
 FIRST_ROUND_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
-NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
+NESTED_CELLS = 4096  # least number of cells of a contact that is first solved on coarser cells. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
-GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # part of the cells in a first guess, and depth over the gap's range. Speed.
+GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # fraction of cells in an initial guess, depth over the gap's range. Speed.
 OPENING_POWER = 2 / 3  # power of the opening that is linear in the distance from a contact's edge. Speed.
 
 
@@ -293,7 +294,7 @@ class ContactProblem:
     """A checked contact to solve."""
 
     grid: Grid
-    gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
+    gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite outside the shape
     resultants: Resultants  # prescribed resultants of the pressure
     tolerance: float  # tolerance of the iteration
     friction: float = 0.0  # coefficient of the traction along +y
@@ -308,10 +309,10 @@ class ContactProblem:
         """Return the contact on cells of twice the size."""
         grid = self.grid.coarsened()
         cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
-        possible = np.isfinite(cells)
-        areas = possible * self.grid.weights.reshape(-1, 2, 1, 1)
+        can_touch = np.isfinite(cells)
+        areas = can_touch * self.grid.weights.reshape(-1, 2, 1, 1)
         total = areas.sum(axis=(1, 3))
-        mean = (np.where(possible, cells, 0.0) * areas).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
+        mean = (np.where(can_touch, cells, 0.0) * areas).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
         lever = self.resultants.lever
         if lever is not None:
             weights = self.grid.weights.reshape(-1, 2)
@@ -323,23 +324,22 @@ class ContactProblem:
 
 
 def _initial_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
-    """First guess of the pressure: the solution on coarser cells, or, on few cells, a pressure that follows the gap."""
+    """Return a guess of the pressure: the solution on coarser cells, or, on few cells, a function of the gap."""
     gap = problem.gap
-    possible = np.isfinite(gap)
+    can_touch = np.isfinite(gap)
     if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):
         coarse = problem.coarsen()
-        squared = _continue_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
-        fine_square = interpolate_columns(halve_cells(squared.T, 0).T, coarse.grid.x, problem.grid.x)
-        guess = np.sqrt(np.maximum(np.where(possible, fine_square, 0.0), 0.0))
+        squared_pressure = _continue_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
+        fine_square = interpolate_columns(halve_cells(squared_pressure.T, 0).T, coarse.grid.x, problem.grid.x)
+        guess = np.sqrt(np.maximum(np.where(can_touch, fine_square, 0.0), 0.0))
     else:
         heights = _remove_mean_slope(problem)
-        heights_in_reach = heights[possible]
-        sinks = problem.resultants.total is not None
-        level = (
-            np.quantile(heights_in_reach, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(heights_in_reach) if sinks else 0.0
-        )
-        guess = np.sqrt(np.maximum(level - np.where(possible, heights, np.inf), 0.0))
-    return np.asarray(guess if guess.any() else possible.astype(np.float64))
+        touchable_heights = heights[can_touch]
+        level = 0.0
+        if problem.resultants.total is not None:
+            level = np.quantile(touchable_heights, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(touchable_heights)
+        guess = np.sqrt(np.maximum(level - np.where(can_touch, heights, np.inf), 0.0))
+    return np.asarray(guess if guess.any() else can_touch.astype(np.float64))
 
 
 def _remove_mean_slope(problem: ContactProblem) -> FloatArray:
@@ -362,15 +362,15 @@ def _continue_square(operator: ContactOperator, problem: ContactProblem, iterate
     squared = iterate.pressure**2
     contact = squared > 0
     height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: iterate.pressure})
-    opened = np.where(
+    positive_opening = np.where(
         contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.rigid_height(iterate.motion), 0.0)
     )
-    opening = opened**OPENING_POWER
-    inner = contact & binary_dilation(~contact)
-    outer = (opening > 0) & binary_dilation(contact)
-    if not inner.any() or not outer.any():
+    opening = positive_opening**OPENING_POWER
+    is_inner_edge = contact & binary_dilation(~contact)
+    is_outer_edge = (opening > 0) & binary_dilation(contact)
+    if not is_inner_edge.any() or not is_outer_edge.any():
         return np.asarray(squared)
-    return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))
+    return np.asarray(squared - opening * (np.median(squared[is_inner_edge]) / np.median(opening[is_outer_edge])))
 
 
 def cell_means(values: FloatArray) -> FloatArray:
@@ -407,7 +407,7 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
 def solve_problem(
     operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None
 ) -> ContactIterate:
-    """Solve a contact: with coupled friction, the traction of one round changes the gap of the next."""
+    """Solve a contact; with coupled friction the traction of each round changes the gap of the next round."""
     if not problem.friction:
         return solve_normal(operator, problem, start)
     # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
@@ -417,21 +417,23 @@ def solve_problem(
         return iterate
     scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
     applications = iterate.applications + 1
-    bending: FloatArray = np.zeros_like(iterate.pressure)
+    displacement: FloatArray = np.zeros_like(iterate.pressure)
     change = FIRST_ROUND_TOLERANCE
     for _ in range(MAX_COUPLED_ROUNDS):
-        previous, previous_bending = iterate.pressure, bending
-        bending = operator({Load.ALONG_Y: problem.friction * previous})
+        previous_pressure, previous_displacement = iterate.pressure, displacement
+        displacement = operator({Load.ALONG_Y: problem.friction * previous_pressure})
         applications += 1
         # Difference of the displacements under the last two tractions.
-        bending_change = float(np.ptp((bending - previous_bending)[previous > 0])) / scale
-        if max(tolerance, change) <= problem.tolerance and bending_change <= 0.5 * problem.tolerance:
-            return replace(iterate, pressure=previous, applications=applications, converged=True)
+        displacement_change = float(np.ptp((displacement - previous_displacement)[previous_pressure > 0])) / scale
+        if max(tolerance, change) <= problem.tolerance and displacement_change <= 0.5 * problem.tolerance:
+            return replace(iterate, pressure=previous_pressure, applications=applications, converged=True)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
-        iterate = solve_normal(operator, replace(problem, gap=problem.gap + bending, tolerance=tolerance), previous)
+        next_problem = replace(problem, gap=problem.gap + displacement, tolerance=tolerance)
+        iterate = solve_normal(operator, next_problem, previous_pressure)
         applications += iterate.applications
         if not iterate.converged:
             break
         weights = problem.grid.weights
-        change = float((weights * np.abs(iterate.pressure - previous)).sum() / (weights * iterate.pressure).sum())
+        total = float((weights * iterate.pressure).sum())
+        change = float((weights * np.abs(iterate.pressure - previous_pressure)).sum()) / total
     return replace(iterate, applications=applications, converged=False)

@@ -19,17 +19,17 @@ from contactstudy.kernels.load import Load
 
 @dataclass(frozen=True, eq=False)
 class CellTransfer:
-    """Matrices of overlaps: `to_second` moves loads to the second body's cells, `to_first` moves displacements back."""
+    """Matrices from overlaps: for loads to the counterbody's cells, for displacements back to the body's cells."""
 
-    to_second: FloatArray
-    to_first: FloatArray
+    to_counterbody: FloatArray
+    to_body: FloatArray
 
     @classmethod
     def of(cls, counterbody: Counterbody, grid: Grid) -> CellTransfer | None:
         """Transfer between the cells of `grid` and of the counterbody; None for equal cells."""
         overlap, widths = counterbody.overlap(grid), grid.widths
-        square = overlap.shape[0] == overlap.shape[1]
-        if square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
+        is_square = overlap.shape[0] == overlap.shape[1]
+        if is_square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
             return None
         return cls(overlap / counterbody.grid_on_body(grid).widths[:, None], overlap.T / widths[:, None])
 
@@ -42,14 +42,14 @@ def _reverse_tangential(direction: Load, values: FloatArray) -> FloatArray:
 class PairOperator:
     """Relative displacement of two bodies on the first body's grid: normal parts add, tangential parts subtract."""
 
-    # The same overlaps move loads to the second body's cells and displacements back: the sum is symmetric. A
-    # traction acts on the second body in the opposite direction.
+    # The same overlaps transfer loads to the counterbody's cells and displacements back: the sum is symmetric. A
+    # traction acts on the counterbody in the opposite direction.
 
     def __init__(
         self, body: SurfaceOperator, counterbody: SurfaceOperator | None, transfer: CellTransfer | None, factor: float
     ) -> None:
-        # Without a second operator the second body is displaced like the first one. `factor`: the normal
-        # displacement of both bodies over that of the first one.
+        # None as `counterbody` has the displacements of the first body. `factor`: the normal displacement of both
+        # bodies over that of the first.
         self.body, self._counterbody, self._transfer, self._factor = body, counterbody, transfer, factor
 
     @classmethod
@@ -61,16 +61,17 @@ class PairOperator:
         loads: tuple[Load, ...],
         directions: tuple[Load, ...] = (Load.NORMAL,),
     ) -> PairOperator:
-        """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
-        first = surface_operator(body, grid, loads, directions=directions)
+        """Operator of two bodies for `loads` and displacements in given directions, on the cells of the first body."""
+        body_operator = surface_operator(body, grid, loads, directions=directions)
         transfer = CellTransfer.of(counterbody, grid)
         factor = 1 + body.material.plane_strain_modulus / counterbody.body.material.plane_strain_modulus
         # Equal bodies share one operator although the cells may differ by rounding.
         same_body = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if transfer is None and same_body and counterbody.start == 0:
-            return cls(first, None, None, factor)
-        second = surface_operator(counterbody.body, counterbody.grid_on_body(grid), loads, directions=directions)
-        return cls(first, second, transfer, factor)
+            return cls(body_operator, None, None, factor)
+        cells = counterbody.grid_on_body(grid)
+        counter_operator = surface_operator(counterbody.body, cells, loads, directions=directions)
+        return cls(body_operator, counter_operator, transfer, factor)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
@@ -84,13 +85,13 @@ class PairOperator:
             return self._displacements_of_equal_bodies(loads, directions)
         transfer = self._transfer
         reaction = {
-            load: _reverse_tangential(load, cell_loads if transfer is None else transfer.to_second @ cell_loads)
+            load: _reverse_tangential(load, cell_loads if transfer is None else transfer.to_counterbody @ cell_loads)
             for load, cell_loads in loads.items()
         }
         relative = self.body.compute_displacements(loads, directions)
         for direction, values in self._counterbody.compute_displacements(reaction, directions).items():
-            second = values if transfer is None else transfer.to_first @ values
-            relative[direction] = relative[direction] + _reverse_tangential(direction, second)
+            counter_displacement = values if transfer is None else transfer.to_body @ values
+            relative[direction] = relative[direction] + _reverse_tangential(direction, counter_displacement)
         return relative
 
     def _displacements_of_equal_bodies(
@@ -99,10 +100,10 @@ class PairOperator:
         """Relative displacements of equal bodies: none tangentially under a pressure, none normally under tractions."""
         relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
         for is_normal in (True, False):
-            acting = {load: cell_loads for load, cell_loads in loads.items() if (load is Load.NORMAL) == is_normal}
-            observed = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
-            if acting and observed:
-                for direction, displacement in self.body.compute_displacements(acting, observed).items():
+            acting_loads = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
+            components = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
+            if acting_loads and components:
+                for direction, displacement in self.body.compute_displacements(acting_loads, components).items():
                     relative[direction] = self._factor * displacement
         return relative
 
@@ -112,16 +113,16 @@ class PairOperator:
 
     @property
     def has_paired_cells(self) -> bool:
-        """Whether the second body's cells can be joined in pairs."""
+        """Whether the counterbody's cells can be joined in pairs."""
         return self._counterbody is None or self._counterbody.grid.cells_x % 2 == 0
 
     @cached_property
     def coarse(self) -> PairOperator:
-        """Approximate operator on cells of twice the size; if cells cannot be paired, a multiple of the first one."""
+        """Approximate operator on cells of twice the size; without pairs of cells a multiple of the first body's."""
         if self._counterbody is None or not self.has_paired_cells:
             return PairOperator(self.body.coarse, None, None, self._factor)
         transfer = self._transfer and CellTransfer(
-            2 * cell_means(self._transfer.to_second), 2 * cell_means(self._transfer.to_first)
+            2 * cell_means(self._transfer.to_counterbody), 2 * cell_means(self._transfer.to_body)
         )
         return PairOperator(self.body.coarse, self._counterbody.coarse, transfer, self._factor)
 

@@ -16,23 +16,23 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-RIGID = 0.5  # exponent at a sharp rigid end
+RIGID = 0.5  # exponent at a sharp rigid end. Physics.
 MIN_GROWTH_EXPONENT = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
 MIN_STEP_RATIO = 0.5  # least ratio of the last two steps of a logarithm to the two preceding ones. Accuracy.
 FIT_START, FIT_STOP = 3.0, 64.0  # distances over the outermost width between which the intensity is fitted. Accuracy.
-MIN_FIT_COLUMNS = 3  # least number of columns of a fitted intensity
+MIN_FIT_COLUMNS = 3  # least number of columns of a fitted intensity. Accuracy.
 
 MAX_FIT_RATIO, NARROW_FACE_ERROR = 0.5, 0.08
-"""Largest reach of the fit over the room beyond an end, and the additional error over K beyond this reach. Accuracy:
-measured as 5 % at 2.5 times the room, 0.8 % at 0.6."""
+"""Largest range of the fit over the length of the face beyond an end, and the additional error over K of a larger
+range. Accuracy: measured as 5 % at a ratio of 2.5, 0.8 % at 0.6."""
 
-STEP_ERROR = 3e-3  # relative error of the intensity due to steps of the pressure. Accuracy: the residual of every fit.
+STEP_ERROR = 3e-3  # relative error of the intensity due to steps of the pressure, the residual of the fits. Accuracy.
 
 ELASTIC_ERROR_FACTOR = 1.5
 """Error of the intensity of an elastic end over its change when both limits of the fit double. Accuracy: unlike a rigid
 end the next power of the distance is not a whole number."""
 
-EDGE_FACTOR = 1.0734  # factor of the peak at an edge of small radius, computed for a half-space
+EDGE_FACTOR = 1.0734  # factor of the peak at an edge of small radius, computed for a half-space. Physics.
 
 
 class Sample(NamedTuple):
@@ -58,20 +58,20 @@ class EndLaw:
         if self.exponent == 0:
             return self
         # Friction moves the contact along y, by different distances at the ends.
-        row = pressure[:, int(pressure[0].argmax())]
-        if row[0] <= 0:
+        line = pressure[:, int(pressure[0].argmax())]
+        if line[0] <= 0:
             return replace(self, intensity=0.0, intensity_error=np.inf)
         width, exponent, fitted = edges[1], self.exponent, bool(np.isnan(self.exponent))
         if fitted:
             from scipy.optimize import minimize_scalar
 
             bounds = (MIN_GROWTH_EXPONENT, RIGID)
-            optimum = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
+            optimum = minimize_scalar(lambda m: _fit_law(edges, line, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(optimum.x)
-        fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
+        fits = [_fit_law(edges, line, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # loaded on too few columns
-            outermost = float((1 - exponent) * row[0] * width**exponent)
-            return replace(self, exponent=exponent, intensity=outermost, intensity_error=np.inf, fitted=fitted)
+            intensity = float((1 - exponent) * line[0] * width**exponent)
+            return replace(self, exponent=exponent, intensity=intensity, intensity_error=np.inf, fitted=fitted)
         error_factor = 1.0 if exponent == RIGID else ELASTIC_ERROR_FACTOR
         error = error_factor * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if 0 < face_beyond < FIT_START * width:  # the columns do not resolve the law
@@ -81,17 +81,17 @@ class EndLaw:
         return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
 
 
-def elastic_exponent(edge: float, face: float) -> float:
-    """Exponent ``m`` of the pressure at a sharp edge of 90 degrees on a wider face, without friction."""
+def elastic_exponent(edge_compliance: float, face_compliance: float) -> float:
+    """Exponent ``m`` at a sharp edge of 90 degrees on a wider face, without friction, from both bodies' ``1 / E*``."""
     # Williams (J. Appl. Mech. 19 (1952) 526), Dundurs and Lee (J. Elasticity 2 (1972) 109), with ``s = 1 - m``: k_e
     # sin(pi s) / (2 (sin(pi s / 2)**2 - s**2)) + k_f cot(pi s) = 0.
     from scipy.optimize import brentq
 
-    def slopes(s: float) -> float:
-        quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
-        return float(edge * quarter + face / np.tan(np.pi * s))
+    def sum_slopes(s: float) -> float:
+        wedge_slope = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
+        return float(edge_compliance * wedge_slope + face_compliance / np.tan(np.pi * s))
 
-    return 1 - float(brentq(slopes, 0.5, 1 - 1e-9)) if edge > 0 else RIGID
+    return 1 - float(brentq(sum_slopes, 0.5, 1 - 1e-9)) if edge_compliance > 0 else RIGID
 
 
 def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
@@ -102,24 +102,24 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     widths, pressures = np.array(samples).T
     if len(samples) < 4 or pressures[-1] <= pressures[-2] or pressures[-3:].min() <= 0:
         return None
-    refinements = np.log(widths[:-1] / widths[1:])
-    if (np.log(pressures[-2:] / pressures[-3:-1]) > MIN_GROWTH_EXPONENT * refinements[-2:]).all():
+    log_ratios = np.log(widths[:-1] / widths[1:])
+    if (np.log(pressures[-2:] / pressures[-3:-1]) > MIN_GROWTH_EXPONENT * log_ratios[-2:]).all():
         return EndLaw(exponent=exponent)
-    steps = np.diff(pressures) / refinements
+    steps = np.diff(pressures) / log_ratios
     if steps.size >= 4 and steps[-2:].sum() > MIN_STEP_RATIO * steps[-4:-2].sum() > 0:
         return EndLaw(exponent=0.0)
     return None
 
 
-def _columns_between(edges: FloatArray, row: FloatArray, start: float, stop: float) -> FloatArray:
+def _columns_between(edges: FloatArray, line: FloatArray, start: float, stop: float) -> FloatArray:
     """Edges and pressures (3, column) of the loaded columns between two distances."""
-    columns = np.stack([edges[:-1], edges[1:], row])
-    return columns[:, (edges[:-1] >= 0.999 * start) & (edges[1:] <= 1.001 * stop) & (row > 0)]
+    columns = np.stack([edges[:-1], edges[1:], line])
+    return columns[:, (edges[:-1] >= 0.999 * start) & (edges[1:] <= 1.001 * stop) & (line > 0)]
 
 
-def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
+def _fit_law(edges: FloatArray, line: FloatArray, width: float, exponent: float) -> tuple[float, float]:
     """Fit ``K d**-m (1 + c d)`` to the columns' means by relative least squares; return K and the residual."""
-    low, high, values = _columns_between(edges, row, FIT_START * width, FIT_STOP * width)
+    low, high, values = _columns_between(edges, line, FIT_START * width, FIT_STOP * width)
     if values.size < MIN_FIT_COLUMNS:
         return np.nan, np.inf
     powers = [1 - exponent, 2 - exponent]
@@ -189,28 +189,28 @@ def corner_law(
     index = int(np.abs(edges - x).argmin())
     if not 0 < index < edges.size - 1 or not pressure[index - 1 : index + 1].any():
         return None
-    row = pressure[:, int((pressure[index - 1] + pressure[index]).argmax())] / intensity
-    sides = (edges[index:] - x, row[index:]), (x - edges[index::-1], row[index - 1 :: -1])
+    axial_pressure = pressure[:, int((pressure[index - 1] + pressure[index]).argmax())] / intensity
+    sides = (edges[index:] - x, axial_pressure[index:]), (x - edges[index::-1], axial_pressure[index - 1 :: -1])
     # On the outer side, which carries less, the contact ends at d0 / 4 from a steep corner.
     reach = CORNER_FIT_STOP * float(edges[index + 1] - x)
     distances, values = max(sides, key=lambda side: float(np.diff(np.minimum(side[0], reach)) @ side[1]))
-    logs = [_log_distance(distances, values, distances[1] * factor) for factor in (1.0, 2.0)]
-    distance = float(np.exp(logs[0]))
-    error = distance * (abs(float(np.expm1(logs[1] - logs[0]))) + CORNER_STEP_ERROR)
+    log_distances = [_log_distance(distances, values, distances[1] * factor) for factor in (1.0, 2.0)]
+    distance = float(np.exp(log_distances[0]))
+    error = distance * (abs(float(np.expm1(log_distances[1] - log_distances[0]))) + CORNER_STEP_ERROR)
     return CornerLaw(
         x=x, slope=slope, intensity=intensity, distance=distance, distance_error=np.inf if np.isnan(error) else error
     )
 
 
-def _log_distance(edges: FloatArray, row: FloatArray, width: float) -> float:
-    """Logarithm of d0, where the columns' values have the terms d and 1/d too; NaN on too few columns."""
-    low, high, row = _columns_between(edges, row, CORNER_FIT_START * width, CORNER_FIT_STOP * width)
-    if row.size < MIN_FIT_COLUMNS:
+def _log_distance(edges: FloatArray, ratio: FloatArray, width: float) -> float:
+    """Logarithm of d0 from a fit, with terms d and 1/d, to pressures over K; NaN on too few columns."""
+    low, high, ratio = _columns_between(edges, ratio, CORNER_FIT_START * width, CORNER_FIT_STOP * width)
+    if ratio.size < MIN_FIT_COLUMNS:
         return np.nan
-    # The steps of the pressure shift the end of a contact by a part of a column: 1/d.
+    # The term 1/d is the shift of a contact's end by a fraction of a column.
     middle = 0.25 * (np.sqrt(low) + np.sqrt(high)) ** 2  # where ``d**-0.5`` has its mean
-    terms = np.stack([np.ones(row.size), middle / width, width / middle], axis=1)
-    values = np.log(middle) + row + 2 * np.log1p(-np.exp(-row))  # eq. (42a): 4 d sinh(p / 2K)**2
+    terms = np.stack([np.ones(ratio.size), middle / width, width / middle], axis=1)
+    values = np.log(middle) + ratio + 2 * np.log1p(-np.exp(-ratio))  # eq. (42a): 4 d sinh(p / 2K)**2
     return float(np.linalg.lstsq(terms, values, rcond=None)[0][0])
 
 

@@ -42,12 +42,12 @@ from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
 
 WINDOW_FACTOR, WINDOW_FACTOR_COUPLED, WINDOW_FACTOR_ROLLING = 1.1, 1.4, 1.5
-"""Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
-whose tractions are also solved on half of the cells and depend on two cells ahead. Speed."""
+"""Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip.
+Tractions with stick and slip are also solved on half of the cells and depend on two cells ahead. Speed."""
 
-WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
-SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
-CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # along y, the first sufficient one; of the first contact. Accuracy
+WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows, so that similar cases share end kernels. Speed.
+SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small. Physics.
+CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # numbers along y to choose from; of the coarse contact. Accuracy.
 
 MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
@@ -78,7 +78,7 @@ def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedCont
 
 
 def _is_immutable(value: object) -> bool:
-    """Whether no value of a part of a case can change: users' profiles may be mutable."""
+    """Whether a case, or a field of a case, cannot change: users' profiles may be mutable."""
     if is_dataclass(value):
         frozen = bool(getattr(type(value), "__dataclass_params__").frozen)  # noqa: B009 - unknown to mypy
         return frozen and all(_is_immutable(getattr(value, field.name)) for field in fields(value))
@@ -102,28 +102,28 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
     shape = _axial_shape(case)
     with one_blas_thread():
         # The half-width depends only weakly on the end correction, which is the expensive part.
-        coarse_solver = _ColumnSolver(replace(case, body=_mirrored(case.body)), half_window, COARSE_CELLS_Y)
+        coarse_solver = _ColumnSolver(replace(case, body=_mirror_body_ends(case.body)), half_window, COARSE_CELLS_Y)
         coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
-        cells = coarse_solver.shape(coarse.edges).grid
-        extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
+        coarse_grid = coarse_solver.shape(coarse.edges).grid
+        extent = float(np.abs(coarse_grid.y[rows]).max()) + 0.5 * coarse_grid.dy
         # Coupled friction moves the contact along y.
         factor = WINDOW_FACTOR_COUPLED if case.coupled else WINDOW_FACTOR
         if not isinstance(case.motion, Sliding):
             factor = WINDOW_FACTOR_ROLLING
-        minimum = factor * extent / case.hertz_half_width
-        window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(minimum) / np.log(WINDOW_STEP)))
+        min_window = factor * extent / case.hertz_half_width
+        window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(min_window) / np.log(WINDOW_STEP)))
         peak_cells = coarse.pressure[int(coarse.pressure.max(axis=1).argmax())] > 0
-        cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
+        cells_y = _choose_cells_y(float(peak_cells.sum()) * coarse_grid.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
         refined = refine_columns(solver, shape, accuracy, None if coarse.singular else coarse.edges)
         refined = _add_data_error(solver, refined, shape)
-    full = solver.shape(refined.edges)
-    guess = ArrayKey(_pad_to_grid(refined.pressure, full.grid, refined.edges))
-    contact = contact_of(full, Settings(tolerance), guess)
+    fine_shape = solver.shape(refined.edges)
+    guess = ArrayKey(_pad_to_grid(refined.pressure, fine_shape.grid, refined.edges))
+    contact = contact_of(fine_shape, Settings(tolerance), guess)
     refined_contact = RefinedContact(contact, refined)
-    if full.coupled_friction or contact.motions.total.tilt:
+    if fine_shape.coupled_friction or contact.motions.total.tilt:
         return replace_contact(refined_contact, contact, case)
     return refined_contact
 
@@ -142,11 +142,12 @@ def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axial
     if other_profile is None:
         return refined
     solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other_profile)))
-    recomputed = replace_pressure(refined, solver(refined.edges, refined.pressure, VALUE_TOLERANCE).pressure, shape)
+    pressure = solver(refined.edges, refined.pressure, VALUE_TOLERANCE).pressure
+    new_values = replace_pressure(refined, pressure, shape).values
     errors = {
         name: [
             error + DATA_ERROR * (abs(value - new_value) if np.isfinite(value) else 0.0)
-            for error, value, new_value in zip(errors, refined.values[name], recomputed.values[name], strict=True)
+            for error, value, new_value in zip(errors, refined.values[name], new_values[name], strict=True)
         ]
         for name, errors in refined.errors.items()
     }
@@ -159,24 +160,24 @@ def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axial
     return replace(refined, errors=errors)
 
 
-def _cell_number_y(fraction: float, accuracy: float) -> int:
+def _choose_cells_y(fraction: float, accuracy: float) -> int:
     """Least number of cells along y that resolve a peak, where the contact covers a `fraction` of the window."""
-    needed = np.sqrt(PEAK_ERROR_FACTOR / (ACCURACY_FRACTION_Y * accuracy)) / fraction
-    return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
+    min_cells = np.sqrt(PEAK_ERROR_FACTOR / (ACCURACY_FRACTION_Y * accuracy)) / fraction
+    return next((cells for cells in CELLS_Y if cells >= min_cells), CELLS_Y[-1])
 
 
 def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
     """Label the values and their errors; a singular end has the values of its law instead of a pressure."""
     refined = refined_contact.refined
-    corners = [corner_law(corner, case.modulus, refined.edges, refined.pressure) for corner in _convex_corners(case)]
-    corner = max(filter(None, corners), key=lambda law: law.intensity, default=None)  # of the loaded ones
+    laws = [corner_law(corner, case.modulus, refined.edges, refined.pressure) for corner in _convex_corners(case)]
+    corner = max(filter(None, laws), key=lambda law: law.intensity, default=None)  # None at corners without contact
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = refined_contact.contact.shape.grid.dy
     for side, end in enumerate(("first", "last")):
-        for name, pair in refined.values.items():
-            unit = dy if name == "end_load" else 1.0
-            values[f"{name}_{end}"] = unit * pair[side]
-            values[f"{name}_{end}_error"] = unit * refined.errors[name][side]
+        for name, end_values in refined.values.items():
+            factor = dy if name == "end_load" else 1.0
+            values[f"{name}_{end}"] = factor * end_values[side]
+            values[f"{name}_{end}_error"] = factor * refined.errors[name][side]
         values |= _law_values(refined.laws[side], f"_{end}")
     sharper_law = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
     values |= _law_values(sharper_law)
@@ -192,7 +193,7 @@ def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
             exponent = float(result[str(key).replace("intensity", "exponent").removesuffix("_error")])
             intensity.attrs["units"] = f"Pa m{exponent:.3g}"
     if not refined.accurate:
-        result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
+        result["peak_pressure_error"].attrs["comment"] = "above the accuracy: the largest number of columns was reached"
     return describe(result)
 
 
@@ -207,7 +208,7 @@ def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
 def contact_shape(
     case: Case, grid: Grid, prescribed: PrescribedLoad | None = None, gap: FloatArray | None = None
 ) -> Shape:
-    """Contact of a case to solve on cells; `prescribed` and `gap` default to the values of the case."""
+    """Contact problem of a case on cells; `prescribed` and `gap` default to the values of the case."""
     gap = case.gap(grid) if gap is None else gap
     if prescribed is None and case.approach is not None:
         prescribed = PrescribedLoad(approach=case.approach)
@@ -231,27 +232,27 @@ class _ColumnSolver:
     cells_y: int
 
     def shape(self, edges: FloatArray) -> Shape:
-        """Contact to solve on cells with columns under the roller between `edges`."""
+        """Contact problem on cells with columns under the roller between `edges`."""
         window = (-self.half_window, self.half_window)
         return contact_shape(self.case, graded_grid(self.case, edges, window, self.cells_y))
 
-    def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+    def __call__(self, edges: FloatArray, first_guess: FloatArray | None, tolerance: float) -> ColumnPressure:
         """Solve without coupled friction, which changes the pressure by a few percent but not the columns."""
         shape = self.shape(edges)._replace(coupled_friction=0.0)
         grid, gap = shape.grid, shape.gap.values
         columns = _roller_columns(grid, edges)
-        guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
+        guess = _pad_to_grid(first_guess, grid, edges) if first_guess is not None and first_guess.any() else None
         resultants = shape.prescribed.resultants(grid)
         problem = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=tolerance)
         operator = contact_operator(shape)
         iterate = solve_normal(operator, problem, guess)
         check_window(shape.body, iterate.pressure)
 
-        def opening() -> FloatArray:
-            opened = gap + operator({Load.NORMAL: iterate.pressure}) - problem.rigid_height(iterate.motion)
-            return np.asarray(opened[columns].min(axis=1))
+        def compute_opening() -> FloatArray:
+            opening = gap + operator({Load.NORMAL: iterate.pressure}) - problem.rigid_height(iterate.motion)
+            return np.asarray(opening[columns].min(axis=1))
 
-        return ColumnPressure(iterate.pressure[columns], opening)
+        return ColumnPressure(iterate.pressure[columns], compute_opening)
 
 
 def _roller_columns(grid: Grid, edges: FloatArray) -> slice:
@@ -268,16 +269,17 @@ def _pad_to_grid(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatAr
 
 
 def _end_exponent(case: Case, distance: float, rounding: float) -> float:
-    """Exponent of the pressure at an end, at a distance from the end of the face; NaN without a theory."""
+    """Exponent of the pressure at a roller's end, at a distance inside the body's end; NaN without a theory."""
     body, roller = case.body, case.roller.body
-    of_body = 1 / body.material.plane_strain_modulus
-    of_roller = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
+    body_compliance = 1 / body.material.plane_strain_modulus
+    roller_compliance = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
     roller_has_ends = isinstance(roller, BodyWithFreeEnds)
     if distance > rounding:
-        return elastic_exponent(of_roller if roller_has_ends else 0.0, of_body)
+        return elastic_exponent(roller_compliance if roller_has_ends else 0.0, body_compliance)
     # The body's edge is loaded if the roller overhangs, or is a half-space.
-    is_loaded = of_roller > 0 and (distance < -rounding or not roller_has_ends)
-    return elastic_exponent(of_body, of_roller) if is_loaded and getattr(body, "model", "") == "exact" else np.nan
+    is_loaded = roller_compliance > 0 and (distance < -rounding or not roller_has_ends)
+    has_law = is_loaded and getattr(body, "model", "") == "exact"
+    return elastic_exponent(body_compliance, roller_compliance) if has_law else np.nan
 
 
 def _axial_shape(case: Case) -> AxialShape:
@@ -287,8 +289,8 @@ def _axial_shape(case: Case) -> AxialShape:
     low, high = body.extent
     rounding = 1e-9 * (stop - start)
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
-    beyond = [distance if distance > rounding else 0.0 for distance in distances]
-    # The factor on images in the body differs from the factor on images in the roller.
+    face_lengths = [distance if distance > rounding else 0.0 for distance in distances]
+    # Different factors on the images in body and roller make the pressure fade at a common end.
     has_fading_end = (
         isinstance(body, BodyWithFreeEnds) and body.model == "mirror-factor" and case.roller.body is not None
     )
@@ -298,7 +300,7 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width=half_width,
         depth=half_width**2 / (2 * case.roller.radius),
         height=case.gap_on_axis,
-        face_beyond=(beyond[0], beyond[1]),
+        face_beyond=(face_lengths[0], face_lengths[1]),
         exponents=(_end_exponent(case, distances[0], rounding), _end_exponent(case, distances[1], rounding)),
         corners=tuple(x for x, _ in _convex_corners(case)),
         nodes=case.nodes,
@@ -307,50 +309,51 @@ def _axial_shape(case: Case) -> AxialShape:
 
 
 LOAD_POWER, LOAD_POWER_RANGE = 1.2, (1.0, 2.0)
-"""Exponent of the load as a power of the depth from first touch: first guess, and bounds. A line contact has
+"""Exponent of the load as a power of the depth from first touch: initial guess, and bounds. A line contact has
 10/9, a point contact 3/2. Speed."""
 
 MAX_EXCESS_DEPTH, MAX_MISSING_DEPTH, MAX_CORRECTIONS = 0.05, 0.005, 12
-"""Parts of the prescribed depth by which a contact may be too deep or too shallow for its columns and window to serve,
+"""Fractions of the prescribed depth by which a contact may be too deep or too shallow to reuse its columns and window,
 and the largest number of corrections of the load. Speed."""
 
 LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
 COARSE_ACCURACY, COARSE_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
-SLICES, SLICE_WIDTH = 200, 0.3  # slices for a first load; a slice's half-width over the undeformed overlap's. Speed.
+SLICES, SLICE_WIDTH = 200, 0.3  # for the initial load: number, half-width over the undeformed overlap's. Speed.
 
 
 def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Contact of a case that prescribes its approach, on columns that are refined to an accuracy."""
     assert case.approach is not None
-    coarse = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), COARSE_ACCURACY, COARSE_TOLERANCE)
+    coarse = search_load(_mirror_case_ends(case), case.approach, _slice_load(case), COARSE_ACCURACY, COARSE_TOLERANCE)
     return search_load(case, case.approach, coarse.contact.carried_load, accuracy, tolerance)
 
 
 def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> RefinedContact:
-    """Contact of a case at an approach, from a first guess of its load."""
-    power, previous = LOAD_POWER, (0.0, 0.0)
+    """Contact of a case at an approach, from an initial guess of its load."""
+    power, previous_load, previous_depth = LOAD_POWER, 0.0, 0.0
     for _ in range(MAX_CORRECTIONS):
-        loaded = replace(case, load=load, max_pressure=None, approach=None)
-        refined = refine_contact(loaded, accuracy, tolerance)
+        loaded_case = replace(case, load=load, max_pressure=None, approach=None)
+        refined = refine_contact(loaded_case, accuracy, tolerance)
         shape = refined.contact.shape
         first_touch = float(shape.gap.values.min())
         depth, prescribed_depth = refined.contact.approach - first_touch, approach - first_touch
         if 1 - MAX_MISSING_DEPTH <= depth / prescribed_depth <= 1 + MAX_EXCESS_DEPTH:
             break
-        if 0 < previous[1] != depth:
-            power = float(np.clip(np.log(load / previous[0]) / np.log(depth / previous[1]), *LOAD_POWER_RANGE))
-        previous = (load, depth)
+        if 0 < previous_depth != depth:
+            secant_power = np.log(load / previous_load) / np.log(depth / previous_depth)
+            power = float(np.clip(secant_power, *LOAD_POWER_RANGE))
+        previous_load, previous_depth = load, depth
         load *= LOAD_EXCESS * (prescribed_depth / depth) ** power
     prescribed = PrescribedLoad(approach=approach).check(shape.gap.values, shape.grid)
     contact = contact_of(shape._replace(prescribed=prescribed), Settings(tolerance))
-    return replace_contact(refined, contact, replace(loaded, load=contact.carried_load))
+    return replace_contact(refined, contact, replace(loaded_case, load=contact.carried_load))
 
 
 def approach_load_error(case: Case, refined_contact: RefinedContact) -> float:
     """Error of the load at a prescribed approach, N: changes on coarser columns and fewer cells, with mirrored ends."""
     refined, grid = refined_contact.refined, refined_contact.contact.shape.grid
-    case = _with_mirrored_ends(case)
+    case = _mirror_case_ends(case)
     window = WINDOW_FACTOR_COARSE * grid.y_range[0], WINDOW_FACTOR_COARSE * grid.y_range[1]
     rows = int(WINDOW_FACTOR_COARSE * grid.cells_y)
 
@@ -359,23 +362,23 @@ def approach_load_error(case: Case, refined_contact: RefinedContact) -> float:
         return contact_of(shape._replace(coupled_friction=0.0), Settings(COARSE_TOLERANCE))
 
     fine = solve(refined.edges, rows, None)
-    deep = PrescribedLoad(approach=fine.approach)
-    coarser = solve(refined.first_edges, rows, deep), solve(refined.edges, rows // 2, deep)
-    return sum(abs(contact.carried_load - fine.carried_load) for contact in coarser)
+    fine_approach = PrescribedLoad(approach=fine.approach)
+    coarser_contacts = solve(refined.first_edges, rows, fine_approach), solve(refined.edges, rows // 2, fine_approach)
+    return sum(abs(contact.carried_load - fine.carried_load) for contact in coarser_contacts)
 
 
-def _mirrored(body: Body) -> Body:
+def _mirror_body_ends(body: Body) -> Body:
     """Body with the mirror model of its ends instead of the exact model."""
     return replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
 
 
-def _with_mirrored_ends(case: Case) -> Case:
+def _mirror_case_ends(case: Case) -> Case:
     """Case with the mirror model of its ends."""
-    return replace(case, body=_mirrored(case.body), roller=replace(case.roller, ends="none"))
+    return replace(case, body=_mirror_body_ends(case.body), roller=replace(case.roller, ends="none"))
 
 
 def _slice_load(case: Case) -> float:
-    """Load of independent slices whose widths are a part of the undeformed overlap, N."""
+    """Load of independent slices whose widths are a fraction of the undeformed overlap, N."""
     assert case.approach is not None
     start, stop = case.contact_range
     x = np.linspace(start, stop, SLICES + 1)
@@ -401,52 +404,52 @@ active sets cycle on these cells, and converge on finer cells."""
 
 
 def refine_tractions(
-    case: Case, normal: RefinedContact, accuracy: float
+    case: Case, normal_contact: RefinedContact, accuracy: float
 ) -> tuple[FrictionalContact, RefinedContact, xr.Dataset]:
     """Tractions of a case on the columns of its normal contact, the contact that they change, and their errors."""
-    motion, rows = case.motion, normal.contact.shape.grid.cells_y
+    motion, cells_y = case.motion, normal_contact.contact.shape.grid.cells_y
     assert isinstance(motion, Shift | Rolling)
-    prescribed = {
+    prescribed_names = {
         RESULTANTS[mode] if mode in motion.modes else name for mode, name in AMPLITUDE_NAMES[type(motion)].items()
     }
-    previous = _contact_on_rows(case, normal, rows // 2, None)
+    previous_contact = _solve_on_cells(case, normal_contact, cells_y // 2, None)
     # FASTSIM's error is due to its model: its strips do not become accurate on finer cells.
-    max_rows = rows if isinstance(motion, Rolling) and motion.model == "fastsim" else CELLS_Y[-1]
+    max_rows = cells_y if isinstance(motion, Rolling) and motion.model == "fastsim" else CELLS_Y[-1]
     while True:
-        contact = _contact_on_rows(case, normal, rows, previous)
-        scales = {name: scale for name, scale in _scales(case, contact).items() if name not in prescribed}
-        values, previous_values = _values(contact), _values(previous)
+        contact = _solve_on_cells(case, normal_contact, cells_y, previous_contact)
+        scales = {name: scale for name, scale in _scales(case, contact).items() if name not in prescribed_names}
+        values, previous_values = _monitored_values(contact), _monitored_values(previous_contact)
         changes = {name: abs(values[name] - previous_values[name]) for name in scales}
-        accurate = all(changes[name] <= accuracy * scale for name, scale in scales.items())
-        if accurate or rows >= max_rows:
+        is_accurate = all(changes[name] <= accuracy * scale for name, scale in scales.items())
+        if is_accurate or cells_y >= max_rows:
             break
-        rows, previous = 2 * rows, contact
-    column_error, edge_error = COLUMN_ERROR_FACTOR * normal.refined.least_error, 0.0
+        cells_y, previous_contact = 2 * cells_y, contact
+    column_error, edge_error = COLUMN_ERROR_FACTOR * normal_contact.refined.least_error, 0.0
     if isinstance(motion, Rolling):
         cells_across = float((contact.contact.pressure > 0).sum(axis=1).max())
         edge_error = EDGE_ERROR_FACTOR * abs(dundurs_parameter(case.body.material, case.roller.material)) / cells_across
     errors = xr.Dataset()
     for name, scale in scales.items():
-        # A force or a moment may be a small difference of large parts; work and rigid motions are not.
+        # A force or a moment may be a small difference of large terms; work and rigid motions are not.
         size = scale if name in RESULTANTS.values() else min(scale, abs(values[name]))
         errors[f"{name}_error"] = changes[name] + column_error * size + edge_error * scale
-        if not accurate:
+        if not is_accurate:
             errors[f"{name}_error"].attrs["comment"] = (
                 "above the accuracy: the largest number of cells along y was reached"
             )
     errors["friction_work_error"].attrs["units"] = "J/m" if isinstance(motion, Rolling) else "J"
-    return contact, replace_contact(normal, contact.contact, case), describe(errors)
+    return contact, replace_contact(normal_contact, contact.contact, case), describe(errors)
 
 
-def _contact_on_rows(
-    case: Case, normal: RefinedContact, rows: int, coarse_contact: FrictionalContact | None
+def _solve_on_cells(
+    case: Case, normal_contact: RefinedContact, cells_y: int, coarse_contact: FrictionalContact | None
 ) -> FrictionalContact:
-    """Contact on the refined columns with `rows` cells along y, with `coarse_contact`, on half as many, as a guess."""
+    """Contact on refined columns with `cells_y` cells along y; the guess `coarse_contact` has half as many."""
     assert isinstance(case.motion, Shift | Rolling)
-    contact = normal.contact
+    contact = normal_contact.contact
     grid = contact.shape.grid
-    if rows != grid.cells_y:
-        grid = Grid.between(grid.x_edges, grid.y_range, rows)
+    if cells_y != grid.cells_y:
+        grid = Grid.between(grid.x_edges, grid.y_range, cells_y)
     request = FrictionRequest(
         motion=case.motion,
         friction=case.friction_on(grid.x),
@@ -458,7 +461,7 @@ def _contact_on_rows(
     return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)
 
 
-def _values(contact: FrictionalContact) -> dict[str, float]:
+def _monitored_values(contact: FrictionalContact) -> dict[str, float]:
     """Values whose changes end the refinement, by name in results."""
     tractions = contact.tractions
     return {**tractions.resultants, "friction_work": tractions.work, **contact.rigid_motions}
@@ -477,6 +480,6 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     if not isinstance(case.motion, Rolling):
         sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
     rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
-    largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
-    named = zip(contact.rigid_motions, rigid.values(), strict=True)
-    return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest, **dict(named)}
+    max_slip = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
+    scales = {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * max_slip}
+    return scales | dict(zip(contact.rigid_motions, rigid.values(), strict=True))

@@ -1,4 +1,4 @@
-"""Columns along the axis: the first follow the shape, and are split where the pressure jumps from column to column."""
+"""Columns along the axis: initial columns follow the shape; columns with a jump of the pressure are split."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ crest that is missed then carries 0.14 of the Hertz pressure at most."""
 
 MIN_CHORD_WIDTH = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
 MAX_WIDTH_RATIO = 2.6  # largest ratio of neighbouring widths. Accuracy.
-MAX_COLUMNS = 600  # columns at which the refinement ends without convergence
+MAX_COLUMNS = 600  # columns at which the refinement ends without convergence. Speed.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,10 +40,10 @@ class AxialShape:
     stop: float
     half_width: float  # Hertz half-width ``a``, metres
     depth: float  # depth ``a**2 / 2R`` to which a cylinder sinks, metres
-    height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane that the shape touches, metres
+    height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane of first touch, metres
     face_beyond: tuple[float, float]  # length of the body's face beyond either end, metres; 0 or less where it ends
     exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
-    has_fading_end: bool = False  # whether the pressure falls by a small power to a common end: not resolvable
+    has_fading_end: bool = False  # whether the pressure at a common end falls to 0 too steeply to be resolved
     corners: tuple[float, ...] = ()  # positions of convex corners and of column edges, metres
     nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
@@ -68,10 +68,10 @@ def first_edges(shape: AxialShape) -> FloatArray:
     edges = shape.start + np.concatenate([half_edges, length - half_edges[-2::-1]])
     edges[-1] = shape.stop
     if shape.corners:
-        edges = split_columns(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
+        edges = split_columns(_insert_edges(edges, shape.corners), np.zeros(0, dtype=bool))
     while True:
         _, lowest, is_bent = _sample(shape, edges)
-        # Columns are split only where the shape is low enough for certain contact.
+        # Columns are split only where the shape is so low that contact is certain.
         is_marked = is_bent & (lowest - lowest.min() < 3 * shape.depth)
         is_marked &= np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
         if not is_marked.any() or edges.size > MAX_COLUMNS:
@@ -80,10 +80,10 @@ def first_edges(shape: AxialShape) -> FloatArray:
 
 
 def _sample(shape: AxialShape, edges: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Heights (column, point), the least height of each column, nodes included, and whether it leaves its chord."""
-    # The outer points lie just inside the column: the shape may step at its ends.
-    inside = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
-    positions = edges[:-1, None] + np.diff(edges)[:, None] * inside
+    """Heights (column, point); per column the least height, nodes included, and whether the shape leaves its chord."""
+    # The outer points lie just inside the column, because the shape may jump at its edges.
+    fractions = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
+    positions = edges[:-1, None] + np.diff(edges)[:, None] * fractions
     heights = shape.height(positions.ravel()).reshape(positions.shape)
     rise, lowest = heights[:, -1] - heights[:, 0], heights.min(axis=1)
     deviations = np.abs(heights - heights[:, :1] - rise[:, None] * SAMPLE_POSITIONS).max(axis=1)
@@ -95,12 +95,12 @@ def _sample(shape: AxialShape, edges: FloatArray) -> tuple[FloatArray, FloatArra
     return heights, lowest, deviations > CHORD_TOLERANCE * shape.depth
 
 
-def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
+def _insert_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
     """Add edges at the corners; edges closer to a corner than a quarter of their narrower column are dropped."""
-    inner, widths = edges[1:-1], np.diff(edges)
-    distances = np.abs(inner[:, None] - corners).min(axis=1)
-    inner = inner[distances >= 0.25 * np.minimum(widths[:-1], widths[1:])]
-    return np.unique(np.concatenate([edges[:1], inner, corners, edges[-1:]]))
+    inner_edges, widths = edges[1:-1], np.diff(edges)
+    distances = np.abs(inner_edges[:, None] - corners).min(axis=1)
+    inner_edges = inner_edges[distances >= 0.25 * np.minimum(widths[:-1], widths[1:])]
+    return np.unique(np.concatenate([edges[:1], inner_edges, corners, edges[-1:]]))
 
 
 def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
@@ -110,11 +110,11 @@ def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, ope
     heights, lowest, is_bent = _sample(shape, edges)
     rigid_height = heights.mean(axis=1) - opening
     lowest_point = heights.argmin(axis=1)
-    neighbour = np.zeros_like(loaded)
-    neighbour[1:] |= loaded[:-1] & (lowest_point[1:] == 0)
-    neighbour[:-1] |= loaded[1:] & (lowest_point[:-1] == SAMPLE_POSITIONS.size - 1)
-    neighbour &= lowest >= heights.min(axis=1)
-    is_missed = ~loaded & ~neighbour & (rigid_height - lowest > PENETRATION_TOLERANCE * shape.depth)
+    is_neighbour = np.zeros_like(loaded)
+    is_neighbour[1:] |= loaded[:-1] & (lowest_point[1:] == 0)
+    is_neighbour[:-1] |= loaded[1:] & (lowest_point[:-1] == SAMPLE_POSITIONS.size - 1)
+    is_neighbour &= lowest >= heights.min(axis=1)
+    is_missed = ~loaded & ~is_neighbour & (rigid_height - lowest > PENETRATION_TOLERANCE * shape.depth)
     is_wide = np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
     return np.asarray(is_wide & (is_missed | (loaded & is_bent)))
 
@@ -137,8 +137,8 @@ MIN_HALF_PRESSURE = 0.1  # least scale of the jumps in a half, over the largest 
 
 
 def pressure_jumps(edges: FloatArray, pressure: FloatArray) -> FloatArray:
-    """For each column, the largest step of powers of the pressure to a neighbour, over the half's peak or own crest."""
-    jumps = [_jumps(edges, pressure, power) for power in JUMP_POWERS]
+    """Per column, the largest step of powers of the pressure to a neighbour, over the half's peak or the crest."""
+    jumps = [_power_jumps(edges, pressure, power) for power in JUMP_POWERS]
     return np.asarray(np.max([*jumps, _crest_jumps(pressure)], axis=0))
 
 
@@ -146,20 +146,20 @@ def _crest_jumps(pressure: FloatArray) -> FloatArray:
     """Per column with a pressure above both neighbours, the larger step of the squared pressure, over the square."""
     # A narrow crest near a contact's end may be lower than the peak of its half, the scale of the other jumps.
     maxima = pressure.max(axis=1)
-    inner, lower = maxima[1:-1], np.minimum(maxima[:-2], maxima[2:])
+    inner, neighbour = maxima[1:-1], np.minimum(maxima[:-2], maxima[2:])
     is_crest = (inner > maxima[:-2]) & (inner > maxima[2:]) & (inner > MIN_HALF_PRESSURE * maxima.max())
     steps = np.zeros_like(maxima)
-    steps[1:-1][is_crest] = 1 - (lower[is_crest] / inner[is_crest]) ** JUMP_POWERS[0]
+    steps[1:-1][is_crest] = 1 - (neighbour[is_crest] / inner[is_crest]) ** JUMP_POWERS[0]
     return np.asarray(steps)
 
 
-def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
+def _power_jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     """For each column, the largest step of a power of the pressure to a neighbour, over the half's largest power."""
     first_half = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
-    reference = np.where(first_half, pressure[first_half].max(), pressure[~first_half].max())
-    reference = np.maximum(reference, MIN_HALF_PRESSURE * pressure.max())
+    half_maxima = np.where(first_half, pressure[first_half].max(), pressure[~first_half].max())
+    half_maxima = np.maximum(half_maxima, MIN_HALF_PRESSURE * pressure.max())
     steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
-    return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (reference / pressure.max()) ** power)
+    return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (half_maxima / pressure.max()) ** power)
 
 
 ValuePairs = Mapping[str, list[float]]
@@ -171,25 +171,25 @@ def evaluate_pairs(
     edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
 ) -> tuple[ValuePairs, float]:
     """Values of a pressure (column, y), and relative increase of the peak by a parabola along y."""
-    line, sums = section_maxima(pressure), pressure.sum(axis=1)
-    half, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
+    maxima, sums = section_maxima(pressure), pressure.sum(axis=1)
+    half_length, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
     loaded_corners = _loaded_corners(shape.corners, edges, pressure)
     values: dict[str, list[float]] = {"peak_pressure": [], "end_pressure": [], "end_load": []}
     for side, law in enumerate(laws):
-        distances, row = count_from_end(side, edges, line)
-        end_pressure = np.inf if law else _extrapolate_to_end(distances, row)
-        half_row = row[centres_of(distances) < half]
+        distances, axial_pressure = count_from_end(side, edges, maxima)
+        end_pressure = np.inf if law else _extrapolate_to_end(distances, axial_pressure)
+        half_pressure = axial_pressure[centres_of(distances) < half_length]
         # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
-        peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
+        peak = max(float(half_pressure.max()), float(np.interp(half_length, centres_of(distances), axial_pressure)))
         # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
-        if half_row.argmax() == 0:
+        if half_pressure.argmax() == 0:
             peak = max(peak, end_pressure)
         is_unbounded = law or any(corner >= mid_x if side else corner <= mid_x for corner in loaded_corners)
         values["peak_pressure"].append(np.inf if is_unbounded else peak)
         values["end_pressure"].append(end_pressure)
         column_sums = count_from_end(side, edges, sums)[1]
         values["end_load"].append(float(column_sums @ np.diff(np.minimum(distances, shape.half_width))))
-    return values, float(line.max() / pressure.max()) - 1
+    return values, float(maxima.max() / pressure.max()) - 1
 
 
 def _loaded_corners(corners: tuple[float, ...], edges: FloatArray, pressure: FloatArray) -> list[float]:
@@ -203,27 +203,27 @@ def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[Fl
     return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
 
 
-def _extrapolate_to_end(edges: FloatArray, row: FloatArray) -> float:
+def _extrapolate_to_end(edges: FloatArray, axial_pressure: FloatArray) -> float:
     """Pressure at the end, from the means of the three outermost columns."""
-    if row[0] <= 0:
+    if axial_pressure[0] <= 0:
         return 0.0
-    sums = np.cumsum(row[:3] * np.diff(edges[:4]))
+    sums = np.cumsum(axial_pressure[:3] * np.diff(edges[:4]))
     positions = edges[1:4]
     return max(float(np.linalg.solve(np.stack([positions, positions**2, positions**3], axis=1), sums)[0]), 0.0)
 
 
 LOGGER = logging.getLogger(__name__)
 
-FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # First threshold, its factor, largest final one. Accuracy
+FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # First threshold, successive ratio, largest last. Accuracy.
 SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold of the jumps in a rough contact. Speed.
-THETA_PER_ERROR = 50.0  # over the least stated error; at 100 the error covered 96 to 99 % of the ends. Accuracy
+THETA_PER_ERROR = 50.0  # Threshold over the least stated error; with 100 it is too small at 1 to 4 % of ends. Accuracy.
 END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loaded end, extrapolated linearly. Accuracy.
-EDGE_COLUMN_WIDTH = 0.25  # Width over a of the columns within one half-width of the ends along x. Accuracy
+EDGE_COLUMN_WIDTH = 0.25  # Width over a of the columns within one half-width of the ends along x. Accuracy.
 END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a loaded end of the body. Accuracy.
-MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4  # Least widths over a, at a sharp end and anywhere. Accuracy
+MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4  # Least widths over a, at a sharp end and anywhere. Accuracy.
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
 LEVEL_TOLERANCE = 1e-2  # tolerance of the contact between two splittings. Speed.
-VALUE_TOLERANCE = 1e-5  # tolerance of the contact of which values are taken. Accuracy.
+VALUE_TOLERANCE = 1e-5  # tolerance of the contact that determines the values. Accuracy.
 
 
 class ColumnPressure(NamedTuple):
@@ -234,7 +234,7 @@ class ColumnPressure(NamedTuple):
 
 
 Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
-"""Function from edges, a first guess of the pressure (or None) and a tolerance to the contact on the columns."""
+"""Function from edges, an initial guess of the pressure (or None) and a tolerance to the contact on the columns."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -246,9 +246,9 @@ class RefinedColumns:
     values: ValuePairs  # values by name; a pressure is infinite at a singular end, 0 at an end without contact
     errors: ValuePairs  # estimated errors of the values
     laws: Sequence[EndLaw | None]  # law of each singular end
-    accurate: bool  # whether every error that is stated is within the accuracy
-    first_edges: FloatArray  # edges of the columns of the first threshold, metres
-    least_error: float  # least error that is stated on these columns, over the value
+    accurate: bool  # whether every stated error is within the accuracy
+    first_edges: FloatArray  # edges of the columns at the first threshold, metres
+    least_error: float  # least stated error on these columns, over the value
 
     @property
     def peak(self) -> float:
@@ -276,7 +276,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, start: Floa
     theta = FIRST_THETA if start is None else SECOND_THETA
     while True:
         refinement.refine(theta)
-        refined = refinement.result(theta, accuracy)
+        refined = refinement.record_result(theta, accuracy)
         is_complete = (theta <= MAX_THETA and refined.accurate) or refined.edges.size > MAX_COLUMNS
         if len(refinement.history) > 1 and is_complete:
             return refined
@@ -337,49 +337,50 @@ class Refinement:
     def _select_columns_to_split(self, theta: float) -> BoolArray:
         """Mark the columns to split at the threshold `theta`."""
         edges, pressure, a = self.edges, self.pressure, self.shape.half_width
-        widths, largest = np.diff(edges), pressure.max()
+        widths, max_pressure = np.diff(edges), pressure.max()
         jumps = pressure_jumps(edges, pressure)
         for side, (i, j) in enumerate(((0, 1), (-1, -2))):
             if self.laws[side] is None and pressure[i].max() > 0:
-                step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / largest
+                step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / max_pressure
                 jumps[i] = max(jumps[i], END_STEP_WEIGHT * step)
                 rises_to_end = pressure[i].max() >= self._half_pressure(side).max()
                 is_sharp = self.shape.is_singular(side) or self.shape.face_beyond[side] > 0 or rises_to_end
                 if widths[i] > (MIN_END_COLUMN if is_sharp else END_COLUMN_WIDTH) * a:
                     jumps[i] = np.inf
         loaded_columns = np.flatnonzero(pressure.any(axis=1))
-        for end in (edges[loaded_columns[0]], edges[loaded_columns[-1] + 1]):
-            is_near = (edges[:-1] < end + a) & (edges[1:] > end - a)
+        for contact_end in (edges[loaded_columns[0]], edges[loaded_columns[-1] + 1]):
+            is_near = (edges[:-1] < contact_end + a) & (edges[1:] > contact_end - a)
             jumps[is_near & (widths > EDGE_COLUMN_WIDTH * a)] = np.inf
         is_marked: BoolArray = (jumps > theta) & (widths > 2 * MIN_COLUMN * a)
         corners = _loaded_corners(self.shape.corners, edges, pressure)
         distances = [np.maximum(edges[:-1] - corner, corner - edges[1:]) for corner in corners]
-        nearest = np.min(distances, axis=0, initial=a)
-        is_wide = widths > np.maximum(MIN_END_COLUMN * a, CORNER_GROWTH * nearest)
-        is_marked = np.where(nearest < a, is_wide, is_marked)
-        for side, outermost in enumerate(((0, 1), (-1, -2))):
+        corner_distance = np.min(distances, axis=0, initial=a)
+        is_wide = widths > np.maximum(MIN_END_COLUMN * a, CORNER_GROWTH * corner_distance)
+        is_marked = np.where(corner_distance < a, is_wide, is_marked)
+        for side, outer_columns in enumerate(((0, 1), (-1, -2))):
             if self.laws[side] is not None:
-                is_marked[list(outermost)] = False
+                is_marked[list(outer_columns)] = False
         return is_marked
 
     def _half_pressure(self, side: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
         return np.asarray(self.pressure[first_half if side == 0 else ~first_half])
 
-    def result(self, theta: float, accuracy: float) -> RefinedColumns:
-        """Columns of a threshold, with values and errors; the values join the history."""
+    def record_result(self, theta: float, accuracy: float) -> RefinedColumns:
+        """Columns of a threshold, with values and errors; record the values in the history."""
         values, lateral_excess = evaluate_pairs(self.edges, self.pressure, self.shape, self.laws)
         self.history.append((self.edges, values))
         finite_peaks = [value for value in values["peak_pressure"] if 0 < value < np.inf]  # a half may have no contact
         scale = max(finite_peaks, default=float(self.pressure.max()))
-        floor = scale * (theta / THETA_PER_ERROR + lateral_excess)
+        least_error = scale * (theta / THETA_PER_ERROR + lateral_excess)
         # The scale of `end_load` is the mean load per length times a half-width.
         length = float(self.edges[-1] - self.edges[0])
         end_load = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
-        floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": end_load * floor / scale}
+        least_errors = dict.fromkeys(("peak_pressure", "end_pressure"), least_error)
+        least_errors["end_load"] = end_load * least_error / scale
         errors = {
-            name: [_change_error([reading[name][side] for _, reading in self.history], lower_bound) for side in (0, 1)]
-            for name, lower_bound in floors.items()
+            name: [_change_error([earlier[name][side] for _, earlier in self.history], bound) for side in (0, 1)]
+            for name, bound in least_errors.items()
         }
         for side in (0, 1):
             fades_out = self.shape.has_fading_end and self.shape.face_beyond[side] == 0
@@ -390,9 +391,8 @@ class Refinement:
                 if self._half_pressure(side).max() <= self.pressure[-side].max():
                     errors["peak_pressure"][side] = np.inf
         finite_errors = [error for error in errors["peak_pressure"] + errors["end_pressure"] if np.isfinite(error)]
-        accurate = (
-            max(finite_errors, default=floor) <= accuracy * scale and max(errors["end_load"]) <= accuracy * end_load
-        )
+        accurate = max(errors["end_load"]) <= accuracy * end_load
+        accurate &= max(finite_errors, default=least_error) <= accuracy * scale
         return RefinedColumns(
             edges=self.edges,
             pressure=self.pressure,
@@ -401,13 +401,13 @@ class Refinement:
             laws=_fit_laws(self.laws, self.edges, self.pressure, self.shape),
             accurate=accurate,
             first_edges=self.history[0][0],
-            least_error=floor / scale,
+            least_error=least_error / scale,
         )
 
 
 def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
-    """Return the same columns with another pressure, which coupled friction has changed a little, and its values."""
-    # The errors grow with the peak. At an end that only friction presses, the pressure itself is the error.
+    """Return the columns with the values of another pressure, which coupled friction has changed a little."""
+    # The errors grow with the peak. At an end in contact only by friction the pressure itself is the error.
     values, _ = evaluate_pairs(refined.edges, pressure, shape, refined.laws)
     largest = max(values["peak_pressure"])
     factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())
@@ -430,8 +430,8 @@ def _fit_laws(
     ]
 
 
-def _change_error(values: list[float], floor: float) -> float:
-    """Error of the last value; infinite for an infinite value, 0 for a pressure that stays 0."""
+def _change_error(values: list[float], least_error: float) -> float:
+    """Error of the last value; infinite for an infinite value, 0 for a pressure that remains 0."""
     last_value = values[-1]
     if not np.isfinite(last_value):
         return np.inf
@@ -439,4 +439,4 @@ def _change_error(values: list[float], floor: float) -> float:
         return 0.0
     changes = [abs(last_value - value) for value in values[-3:-1] if np.isfinite(value)]
     half_change = 0.5 * max(changes, default=np.inf)
-    return max(half_change, floor)  # eq. (40)
+    return max(half_change, least_error)  # eq. (40)

@@ -20,9 +20,9 @@ from contactstudy.checks import BoolArray, FloatArray
 
 Operator = Callable[[FloatArray], FloatArray]
 
-GUESS_TOLERANCE = 1e-6  # distance from the bound, over the bound, within which a cell of a guess slips. Speed.
-DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
-MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
+GUESS_TOLERANCE = 1e-6  # distance of a slipping cell's traction in a guess from the bound, over the bound. Speed.
+DESCENT_INTERVAL = 15  # Newton steps without convergence between descents of the energy to a new guess. Speed.
+MAX_DIRECT_STEPS = 40  # Newton steps without convergence before resultants are raised by steps. Speed.
 MIN_CONTINUATION_STEP = 1e-3  # least step of the resultants over the prescribed resultants. Speed.
 
 
@@ -68,7 +68,7 @@ class CoulombSolution:
 
 
 class Guess(NamedTuple):
-    """Start of the iteration: tractions (2, cell), the bound where cells slip, and amplitudes (mode) of rigid slips."""
+    """Initial guess: tractions (2, cell), equal to the bound where cells slip, and amplitudes (mode) of rigid slips."""
 
     traction: FloatArray
     amplitudes: FloatArray
@@ -91,19 +91,19 @@ def law_violation(
 
 def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
     """Solve Coulomb's law; where Newton's method does not converge, raise prescribed resultants step by step."""
-    # Near full sliding few cells stick. Resultants between two admissible resultants are admissible: every step has a
-    # solution.
+    # Near full sliding few cells stick. Resultants between two admissible resultants are admissible, so every step
+    # has a solution.
     if not len(problem.modes) or problem.max_steps <= MAX_DIRECT_STEPS:
         return solve_coulomb(problem, start)
     solution = solve_coulomb(replace(problem, max_steps=MAX_DIRECT_STEPS), start)
     if solution.converged:
         return solution
     no_modes = problem.modes[:0]
-    unconstrained = replace(problem, modes=no_modes, resultant_weights=no_modes, resultants=problem.resultants[:0])
-    without_modes = solve_coulomb(unconstrained)
-    steps = solution.steps + without_modes.steps
-    resultants = (problem.resultant_weights * without_modes.traction).sum(axis=(1, 2))
-    guess, load_fraction, step = Guess(without_modes.traction, np.zeros(len(problem.modes))), 0.0, 0.5
+    free_problem = replace(problem, modes=no_modes, resultant_weights=no_modes, resultants=problem.resultants[:0])
+    free_solution = solve_coulomb(free_problem)
+    steps = solution.steps + free_solution.steps
+    resultants = (problem.resultant_weights * free_solution.traction).sum(axis=(1, 2))
+    guess, load_fraction, step = Guess(free_solution.traction, np.zeros(len(problem.modes))), 0.0, 0.5
     while load_fraction < 1 and step > MIN_CONTINUATION_STEP and steps < problem.max_steps:
         trial_fraction = min(1.0, load_fraction + step)
         trial_resultants = (1 - trial_fraction) * resultants + trial_fraction * problem.resultants
@@ -130,7 +130,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         slip = problem.slip(traction, amplitudes)
     steps, converged, accuracy, violation = 0, False, 0.1, np.inf
     visited, change_fraction, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
-    least: Guess | None = None
+    descent: Guess | None = None
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
@@ -147,24 +147,23 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         begins_stick = _select_first(~sticks & ((slip * traction).sum(axis=0) < 0), change_fraction)
         sticks = (sticks & ~begins_slip) | begins_stick
         scale = problem.slip_scale(amplitudes)
-        missing = np.abs((problem.resultant_weights * traction).sum(axis=(1, 2)) - problem.resultants)
-        largest = np.abs(problem.resultant_weights).sum(axis=1) @ bound if len(problem.modes) else np.ones(0)
+        errors = np.abs((problem.resultant_weights * traction).sum(axis=(1, 2)) - problem.resultants)
+        max_resultants = np.abs(problem.resultant_weights).sum(axis=1) @ bound if len(problem.modes) else np.ones(0)
         previous_violation = violation
-        violation = max(
-            *law_violation(traction, slip, bound, sticks, scale), float((missing / largest).max(initial=0.0))
-        )
+        force_violation = float((errors / max_resultants).max(initial=0.0))
+        violation = max(*law_violation(traction, slip, bound, sticks, scale), force_violation)
         converged = violation <= problem.tolerance
-        unchanged = np.array_equal(sticks, active_set)
+        is_unchanged = np.array_equal(sticks, active_set)
         # The linear systems are solved more accurately where the last step did not reduce the violation. Speed.
-        accuracy = 1e-2 if unchanged or violation > 0.8 * previous_violation else 0.1
-        if not unchanged:
+        accuracy = 1e-2 if is_unchanged or violation > 0.8 * previous_violation else 0.1
+        if not is_unchanged:
             # A repeated active set halves the share of cells that may change at once, in the limit to one (Murty).
             change_fraction = 0.5 * change_fraction if sticks.tobytes() in visited else min(1.0, 2 * change_fraction)
             visited.add(sticks.tobytes())
         if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
             # Each descent continues the last one: the energy decreases whatever Newton's steps in between do.
-            least = balance_tractions(problem, least or Guess(limit_tractions(traction, bound), amplitudes), scale)
-            traction, amplitudes = least
+            descent = balance_tractions(problem, descent or Guess(limit_tractions(traction, bound), amplitudes), scale)
+            traction, amplitudes = descent
             slip, change_fraction = problem.slip(traction, amplitudes), 1.0
             sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
     return CoulombSolution(
@@ -177,9 +176,9 @@ def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
     if fraction == 1:
         return cells
     indices = np.flatnonzero(cells)
-    first = np.zeros_like(cells)
-    first[indices[: max(1, int(fraction * indices.size))]] = True
-    return first
+    is_selected = np.zeros_like(cells)
+    is_selected[indices[: max(1, int(fraction * indices.size))]] = True
+    return is_selected
 
 
 def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
@@ -197,11 +196,11 @@ def _unknown_basis(direction: FloatArray, sticks: BoolArray) -> Any:
     # Unknowns are both components of a sticking cell's traction, and a slipping cell's component across the slip.
     from scipy.sparse import csr_array
 
-    first = np.where(sticks, np.array([[1.0], [0.0]]), np.stack([-direction[1], direction[0]]))
+    first_components = np.where(sticks, np.array([[1.0], [0.0]]), np.stack([-direction[1], direction[0]]))
     cells, sticking = np.arange(sticks.size), np.flatnonzero(sticks)
     rows = np.concatenate([cells, cells.size + cells, cells.size + sticking])
     columns = np.concatenate([cells, cells, cells.size + np.arange(sticking.size)])
-    return csr_array((np.append(first, np.ones(sticking.size)), (rows, columns)))
+    return csr_array((np.append(first_components, np.ones(sticking.size)), (rows, columns)))
 
 
 def _newton_step(
@@ -229,17 +228,17 @@ def _newton_step(
         return np.asarray(transposed @ (root * slip).ravel())
 
     parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
-    turning = np.append(np.where(sticks, 0.0, parallel / problem.bound), np.zeros(int(sticks.sum())))
+    slip_ratio = np.append(np.where(sticks, 0.0, parallel / problem.bound), np.zeros(int(sticks.sum())))
     # Spin (1/m) and moment (N m) are scaled to the units of slip, so that one residual contains all unknowns.
-    count, shape = turning.size, (len(problem.modes), turning.size)
-    sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
-    modes = np.array([components_of(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
-    weights = np.array([components_of(work / problem.relative_areas) for work in problem.resultant_weights])
+    count, shape = slip_ratio.size, (len(problem.modes), slip_ratio.size)
+    mode_sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
+    modes = np.array([components_of(mode) for mode in problem.modes]).reshape(shape) / mode_sizes[:, None]
+    weights = np.array([components_of(weight / problem.relative_areas) for weight in problem.resultant_weights])
     weights = weights.reshape(shape)
-    unit = (np.abs(weights).sum(axis=1) + np.finfo(float).tiny) / float(diagonal.mean())
-    weights = weights / unit[:, None]
+    resultant_units = (np.abs(weights).sum(axis=1) + np.finfo(float).tiny) / float(diagonal.mean())
+    weights = weights / resultant_units[:, None]
     diagonal = np.append(diagonal, diagonal[sticks])
-    damping = np.sqrt(diagonal / (diagonal + turning))
+    damping = np.sqrt(diagonal / (diagonal + slip_ratio))
 
     def invert(slip: FloatArray) -> FloatArray:
         return np.asarray(damping * components_of(problem.inverse(tractions_of(damping * slip))))
@@ -249,7 +248,7 @@ def _newton_step(
 
     def multiply(unknowns: FloatArray) -> FloatArray:
         tractions, rigid = unknowns[:count], unknowns[count:]
-        slip = components_of(problem.apply_compliance(tractions_of(tractions))) + turning * tractions
+        slip = components_of(problem.apply_compliance(tractions_of(tractions))) + slip_ratio * tractions
         return np.concatenate([slip - rigid @ modes, weights @ tractions])
 
     def precondition(residual: FloatArray) -> FloatArray:
@@ -259,12 +258,12 @@ def _newton_step(
         rigid = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
         return np.concatenate([tractions + rigid @ inverse_modes, rigid])
 
-    resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / unit
+    resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / resultant_units
     residual = np.concatenate([components_of(slip), resultant_errors])
     # With the preconditioner on the right the residual is the system's. 60 directions, 5 restarts. Speed.
     operator = LinearOperator((residual.size,) * 2, lambda vector: multiply(precondition(vector)), dtype=float)
     change = precondition(gmres(operator, residual, rtol=accuracy, atol=0.0, restart=60, maxiter=5)[0])
-    return traction + tractions_of(change[:count]), amplitudes + change[count:] / sizes
+    return traction + tractions_of(change[:count]), amplitudes + change[count:] / mode_sizes
 
 
 def _diagonal(problem: CoulombProblem) -> FloatArray:
@@ -272,10 +271,10 @@ def _diagonal(problem: CoulombProblem) -> FloatArray:
     diagonal = np.empty_like(problem.bound)
     for area in np.unique(problem.relative_areas):
         cells = problem.relative_areas == area
-        unit = np.zeros_like(problem.rigid)
-        largest = int(np.where(cells, problem.bound, 0.0).argmax())
-        unit[1, largest] = 1.0
-        diagonal[cells] = abs(1.0 / problem.inverse(unit)[1, largest])
+        unit_slip = np.zeros_like(problem.rigid)
+        cell = int(np.where(cells, problem.bound, 0.0).argmax())
+        unit_slip[1, cell] = 1.0
+        diagonal[cells] = abs(1.0 / problem.inverse(unit_slip)[1, cell])
     return diagonal
 
 
@@ -301,14 +300,14 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> Gu
         return Guess(minimize_energy(amplitudes)[0], amplitudes)
     area = float((weights[0] / areas).max())
     max_resultants = np.abs(weights).sum(axis=1) @ bound
-    unit = scale * float(max_resultants.max())
+    energy_unit = scale * float(max_resultants.max())
 
-    def dual_energy(scaled: FloatArray) -> tuple[float, FloatArray]:
-        tractions, slip, rigid = minimize_energy(scale * scaled)
+    def dual_energy(scaled_amplitudes: FloatArray) -> tuple[float, FloatArray]:
+        tractions, slip, rigid = minimize_energy(scale * scaled_amplitudes)
         energy = 0.5 * area * float((areas * tractions * (rigid + slip)).sum()) - float(
-            scale * scaled @ problem.resultants
+            scale * scaled_amplitudes @ problem.resultants
         )
-        return energy / unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
+        return energy / energy_unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / energy_unit
 
     # The gradient is the error of the resultants over full sliding's resultants. Speed.
     optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
@@ -332,21 +331,21 @@ def descend_energy(
 ) -> tuple[FloatArray, FloatArray]:
     """Minimise the energy from tractions (2, cell) within their bound and their slip; return tractions and slip."""
 
-    def product(first: FloatArray, second: FloatArray) -> float:
-        return float((areas * first * second).sum())
+    def scalar_product(vector: FloatArray, other: FloatArray) -> float:
+        return float((areas * vector * other).sum())
 
     slip_change = apply_compliance(slip)
-    curvature = product(slip, slip_change)
-    step_length = product(slip, slip) / curvature if curvature > 0 else 0.0
+    curvature = scalar_product(slip, slip_change)
+    step_length = scalar_product(slip, slip) / curvature if curvature > 0 else 0.0
     for _ in range(max_steps):
         change = limit_tractions(traction + step_length * slip, bound) - traction
         if float(np.abs(change).max()) <= 1e-7 * float(bound.max()):  # Speed.
             break
         slip_change = apply_compliance(change)
-        curvature = product(change, slip_change)
+        curvature = scalar_product(change, slip_change)
         # The energy is least between the current and the projected point, or at the projected point.
-        fraction = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
+        fraction = min(1.0, scalar_product(slip, change) / curvature) if curvature > 0 else 1.0
         traction, slip = traction + fraction * change, slip - fraction * slip_change
         if curvature > 0:
-            step_length = product(change, change) / curvature
+            step_length = scalar_product(change, change) / curvature
     return traction, slip

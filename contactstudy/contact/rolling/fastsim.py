@@ -14,9 +14,9 @@ from contactstudy.case.motion import Rolling
 from contactstudy.checks import FloatArray
 from contactstudy.contact.rolling.surfaces import Surfaces, Tractions
 
-POISSONS = (0.0, 0.25, 0.5)
+POISSONS = (0.0, 0.25, 0.5)  # Poisson's ratios of the table. Physics.
 
-TABLE = (  # Half-width along rolling over the half-width across, and c11, c22, c23 for the three Poisson's ratios
+TABLE = (  # half-width along rolling over that across; c11, c22, c23 at three Poisson's ratios. Physics.
     (0.1, (2.51, 3.31, 4.85), (2.51, 2.52, 2.53), (0.334, 0.473, 0.731)),
     (0.2, (2.59, 3.37, 4.81), (2.59, 2.63, 2.66), (0.483, 0.603, 0.809)),
     (0.3, (2.68, 3.44, 4.80), (2.68, 2.75, 2.81), (0.607, 0.715, 0.889)),
@@ -40,8 +40,8 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
     from scipy.interpolate import PchipInterpolator
 
     if ratio < TABLE[0][0]:
-        turning = np.pi * np.sqrt(ratio) / (3 * (1 - poisson)) * (1 + poisson * (np.log(16 / ratio) - 5))
-        return np.array([np.pi**2 / (4 * (1 - poisson)), np.pi**2 / 4, turning])
+        spin_coefficient = np.pi * np.sqrt(ratio) / (3 * (1 - poisson)) * (1 + poisson * (np.log(16 / ratio) - 5))
+        return np.array([np.pi**2 / (4 * (1 - poisson)), np.pi**2 / 4, spin_coefficient])
     ratios = np.log([row[0] for row in TABLE])
     logarithm = float(np.clip(np.log(ratio), ratios[0], ratios[-1]))
     values = PchipInterpolator(ratios, np.array([row[1:] for row in TABLE]))(logarithm)
@@ -67,34 +67,34 @@ def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Trac
     half_widths = 0.5 * float(grid.widths[rows].sum()), 0.5 * columns.size * grid.dy
     # Mean compliances of the bodies; a rigid body contributes 0.
     shear_compliance = 0.5 * sum(1 / material.shear_modulus for material in surfaces.materials)
-    coupling = 0.5 * sum(material.poisson / material.shear_modulus for material in surfaces.materials)
-    compliance = flexibilities(half_widths, 1 / shear_compliance, coupling / shear_compliance)
-    spin_growth = rigid["spin"] / compliance["spin"]
-    growth = np.zeros((2, *grid.shape))
-    growth[0] = rigid["x"] / compliance["x"] - spin_growth * grid.y
-    growth[1] = rigid["y"] / compliance["y"] + spin_growth * (grid.x - surfaces.reference_x)[:, None]
-    traction, lost_growth = strip_tractions(bound, growth, grid.dy)
-    slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost_growth
-    sticks = (bound > 0) & ~lost_growth.any(axis=0)
+    poisson_compliance = 0.5 * sum(material.poisson / material.shear_modulus for material in surfaces.materials)
+    compliance = flexibilities(half_widths, 1 / shear_compliance, poisson_compliance / shear_compliance)
+    spin_gradient = rigid["spin"] / compliance["spin"]
+    gradient = np.zeros((2, *grid.shape))
+    gradient[0] = rigid["x"] / compliance["x"] - spin_gradient * grid.y
+    gradient[1] = rigid["y"] / compliance["y"] + spin_gradient * (grid.x - surfaces.reference_x)[:, None]
+    traction, lost_gradient = strip_tractions(bound, gradient, grid.dy)
+    slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost_gradient
+    sticks = (bound > 0) & ~lost_gradient.any(axis=0)
     return Tractions.of(surfaces, rigid, bound=bound, traction=traction, slip=slip, sticks=sticks)
 
 
-def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
-    """Tractions and the part of their growth lost to slip, both (2, x, y); material enters at the leading edge."""
-    traction, lost_growth = np.zeros_like(growth), np.zeros_like(growth)
-    previous, previous_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
+def strip_tractions(bound: FloatArray, gradient: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
+    """Tractions and the part of their gradient lost to slip, both (2, x, y); material enters at the leading edge."""
+    traction, lost_gradient = np.zeros_like(gradient), np.zeros_like(gradient)
+    previous_traction, previous_gradient = np.zeros(gradient.shape[:2]), np.zeros(gradient.shape[:2])
     behind_edge = np.zeros(bound.shape[0], bool)
     for column in range(bound.shape[1] - 1, -1, -1):
-        inside, cell_growth = bound[:, column] > 0, growth[:, :, column]
-        # The first centre lies half a cell behind the edge; between two centres the growth is the mean of both.
-        growth_step = np.where(behind_edge, 0.5 * (cell_growth + previous_growth) * dy, 0.5 * cell_growth * dy)
-        sticking_traction = previous + growth_step
+        is_inside, cell_gradient = bound[:, column] > 0, gradient[:, :, column]
+        # The first centre lies half a cell behind the edge; between two centres the gradient is the mean of both.
+        traction_step = np.where(behind_edge, 0.5 * (cell_gradient + previous_gradient) * dy, 0.5 * cell_gradient * dy)
+        sticking_traction = previous_traction + traction_step
         size = np.hypot(*sticking_traction)
         fraction = np.minimum(bound[:, column] / np.where(size > 0, size, 1.0), 1.0)
-        limited_traction = np.where(inside, sticking_traction * fraction, 0.0)
+        limited_traction = np.where(is_inside, sticking_traction * fraction, 0.0)
         traction[:, :, column] = limited_traction
-        lost_growth[:, :, column] = np.where(
-            inside & (fraction < 1), (sticking_traction - limited_traction) / np.where(behind_edge, dy, 0.5 * dy), 0.0
-        )
-        previous, previous_growth, behind_edge = limited_traction, cell_growth, inside
-    return traction, lost_growth
+        distance = np.where(behind_edge, dy, 0.5 * dy)
+        excess_gradient = (sticking_traction - limited_traction) / distance
+        lost_gradient[:, :, column] = np.where(is_inside & (fraction < 1), excess_gradient, 0.0)
+        previous_traction, previous_gradient, behind_edge = limited_traction, cell_gradient, is_inside
+    return traction, lost_gradient

@@ -102,7 +102,7 @@ class FrictionalContact:
 
 
 def frictional_contact(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
-    """Solve a contact with the tractions of a motion."""
+    """Solve a contact for the pressure and the tractions of a motion."""
     motion = request.motion
     directions, materials = DIRECTIONS if request.coupled else TANGENTIAL, [shape.body.material]
     operator: PairOperator | SurfaceOperator
@@ -114,7 +114,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             materials.append(shape.counterbody.body.material)
     surfaces = Surfaces(operator, shape.grid, materials, request.reference_x)
 
-    def solve_under(pressure: FloatArray, guess: Tractions | None = None) -> Tractions:
+    def solve_for_pressure(pressure: FloatArray, guess: Tractions | None = None) -> Tractions:
         if isinstance(motion, Rolling) and pressure[:, -2:].any():
             raise WindowError(
                 "the contact reaches the last two cells along +y, and the slip of rolling follows from the two cells "
@@ -124,17 +124,17 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             return solve_tractions(request, settings, surfaces, pressure, guess)
 
     contact = contact_of(shape, settings)
-    tractions, converged = solve_under(contact.pressure), True
+    tractions, converged = solve_for_pressure(contact.pressure), True
     if request.coupled:
         converged = False
         tolerance = max(settings.tolerance, MIN_ACCURACY)
         for round_index in range(MAX_ROUNDS):
             loads = dict(zip(TANGENTIAL, tractions.traction, strict=True))
-            bending = operator.compute_displacements(loads, (Load.NORMAL,))
+            displacements = operator.compute_displacements(loads, (Load.NORMAL,))
             previous_pressure = contact.pressure
-            contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bending[Load.NORMAL])), settings)
+            contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + displacements[Load.NORMAL])), settings)
             # The first coupled pressure fixes sliding columns and leading edges: new ones per round would alternate.
-            tractions = solve_under(contact.pressure, tractions if round_index else None)
+            tractions = solve_for_pressure(contact.pressure, tractions if round_index else None)
             change = float(np.abs(contact.pressure - previous_pressure).sum() / contact.pressure.sum())
             if change <= tolerance:
                 converged = True

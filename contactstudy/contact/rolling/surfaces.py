@@ -98,17 +98,17 @@ class Tractions:
 
 
 def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray) -> None:
-    """Raise if tractions within their bound (x, y) cannot make the prescribed resultants with these `weights`."""
+    """Raise if no tractions within their bound (x, y) have the prescribed resultants, sums with these `weights`."""
     modes, resultants = motion.modes, np.array(list(motion.resultants.values()))
     if not modes or (bound.any() and not resultants.any()):
         return
     names = [RESULTANTS[mode] for mode in modes]
-    largest = _largest_multiple(resultants, bound, weights[[list(RESULTANTS).index(mode) for mode in modes]])
+    max_multiple = _largest_multiple(resultants, bound, weights[[list(RESULTANTS).index(mode) for mode in modes]])
     # At the force of full sliding the rigid slip is undetermined.
-    if largest * (1 - 1e-9) > 1:
+    if max_multiple * (1 - 1e-9) > 1:
         return
     limits = ", ".join(
-        f"{name} = {largest * value:.6g} {'N m' if name == 'moment_z' else 'N'}"
+        f"{name} = {max_multiple * value:.6g} {'N m' if name == 'moment_z' else 'N'}"
         for name, value in zip(names, resultants, strict=True)
     )
     raise InvalidInputError(
@@ -120,27 +120,28 @@ def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray
 
 
 def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatArray) -> float:
-    """Largest multiple of the resultants that tractions within their bound (x, y) make."""
-    # Tractions along a slip ``d . works`` make the largest resultant along d: the multiple is the least over the
-    # directions d of a convex function, so a descent approaches the multiple from above.
+    """Largest multiple of the resultants of tractions within their bound (x, y)."""
+    # Tractions along a slip ``d . weights`` have the largest resultant along d. The multiple is the least value of a
+    # convex function of the direction d, which a descent approaches from above.
     from scipy.optimize import minimize
 
     is_loaded = bound > 0
     loaded_bound, weights = bound[is_loaded], weights[:, :, is_loaded]
-    sizes = np.array([float((loaded_bound * np.hypot(*work)).sum()) for work in weights])
-    has_resultant = sizes > 0
+    max_resultants = np.array([float((loaded_bound * np.hypot(*weight)).sum()) for weight in weights])
+    has_resultant = max_resultants > 0
     if resultants[~has_resultant].any() or not has_resultant.any():
         return 0.0
-    sizes = sizes[has_resultant]
-    weights, target = weights[has_resultant] / sizes[:, None, None], resultants[has_resultant] / sizes
-    # The square of a very small target would vanish.
+    max_resultants = max_resultants[has_resultant]
+    weights = weights[has_resultant] / max_resultants[:, None, None]
+    target = resultants[has_resultant] / max_resultants
+    # The square of very small resultants would underflow.
     scale = float(np.abs(target).max())
     target = target / scale
     direction = target / (target @ target)
     normal_directions = np.linalg.svd(direction[None, :])[2][1:]
 
-    def evaluate_resultant(rotation: FloatArray) -> tuple[float, FloatArray]:
-        slip = np.tensordot(direction + rotation @ normal_directions, weights, axes=1)
+    def evaluate_resultant(components: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(direction + components @ normal_directions, weights, axes=1)
         size = np.hypot(*slip)
         gradient = (weights * (loaded_bound * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
         return float((loaded_bound * size).sum()), normal_directions @ gradient

@@ -35,11 +35,11 @@ from contactstudy.contact.rolling.surfaces import TANGENTIAL, LeadingEdges, Surf
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 
-MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
-EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
+MIN_LEADING_LENGTH = 0.72  # least part c in the contact of a leading cell with an unknown traction. Accuracy.
+EDGE_OFFSET = -0.84  # position b of the slip less the part c. Accuracy.
 DEPENDENT_OFFSET, SLIPPING_OFFSET = 0.475, 1 / 3  # position b with a dependent or slipping leading cell. Accuracy.
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
-LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not loaded, more is another loaded cell. Accuracy.
+LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: from a nearly unloaded cell to a part of the next. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,18 +76,18 @@ class RollingCells:
         offset = np.full(pressure.shape, EDGE_OFFSET + 1.0)
         is_unknown, ratio = loaded.copy(), loaded.astype(np.float64)
         for row, last_column in leading_cells:
-            unloaded = np.flatnonzero(~loaded[row, : last_column + 1])
-            first = int(unloaded[-1]) + 1 if unloaded.size else 0
+            unloaded_columns = np.flatnonzero(~loaded[row, : last_column + 1])
+            first_column = int(unloaded_columns[-1]) + 1 if unloaded_columns.size else 0
             if slips_at_edge[row]:
-                offset[row, first : last_column + 1] = SLIPPING_OFFSET
+                offset[row, first_column : last_column + 1] = SLIPPING_OFFSET
                 continue
-            if last_column + 1 - first < MIN_CELLS:
+            if last_column + 1 - first_column < MIN_CELLS:
                 continue
-            leading_length = _inside_length(edge_pressure[row, first : last_column + 1])
+            leading_length = _inside_length(edge_pressure[row, first_column : last_column + 1])
             if leading_length >= MIN_LEADING_LENGTH:
-                offset[row, first : last_column + 1] = EDGE_OFFSET + leading_length  # eq. (44a)
+                offset[row, first_column : last_column + 1] = EDGE_OFFSET + leading_length  # eq. (44a)
             else:
-                offset[row, first : last_column + 1] = DEPENDENT_OFFSET
+                offset[row, first_column : last_column + 1] = DEPENDENT_OFFSET
                 is_unknown[row, last_column] = False
                 ratio[row, last_column] = bound[row, last_column] / bound[row, last_column - 1]
         if weights is not None:
@@ -101,13 +101,13 @@ class RollingCells:
         return np.asarray(self.bound[self.is_unknown])
 
     def on_grid(self, values: Array) -> Array:
-        """Values of all cells (..., x, y) from the unknown ones (..., unknown); a dependent cell has its source's."""
+        """Values (..., x, y) on all cells from values (..., unknown); a dependent cell has the value of its source."""
         return np.where(self.ratio > 0, np.take(values, self.source, axis=-1), values.dtype.type(0))
 
     def gather(self, weights: FloatArray) -> FloatArray:
-        """Weights (part, unknown) of sums over the unknown tractions, from weights (part, x, y) over all cells."""
+        """Weights (resultant, unknown) of the unknown tractions, from weights (resultant, x, y) of all cells."""
         loaded, count = self.ratio > 0, self.offset.size
-        return np.array([np.bincount(self.source[loaded], (self.ratio * part)[loaded], count) for part in weights])
+        return np.array([np.bincount(self.source[loaded], (self.ratio * weight)[loaded], count) for weight in weights])
 
     def derivative(self, displacement: FloatArray, dy: float) -> FloatArray:
         """Return the derivative (unknown) along y of a displacement (x, y), constant beyond the last cell."""
@@ -121,21 +121,21 @@ def averaging_weights(x: FloatArray, widths: FloatArray, dy: float) -> FloatArra
     """Weights (column, column) of all columns in each column's offset of the slip; None if columns are far apart."""
     # At different offsets the slips of neighbours nearer than a cell's length would differ by more than their
     # tractions.
-    near = np.maximum(1 - np.abs(x[:, None] - x) / dy, 0.0)
-    return near * widths if np.count_nonzero(near) > x.size else None
+    proximity = np.maximum(1 - np.abs(x[:, None] - x) / dy, 0.0)
+    return proximity * widths if np.count_nonzero(proximity) > x.size else None
 
 
 def _inside_length(pressure: FloatArray) -> float:
     """Distance, in cells, from the inner border of the last cell to the contact's edge."""
     # A parabola through the squared pressures of the third to fifth last cells locates the edge, which affects the
-    # last two. The contact may reach into the next cell, which then has no pressure.
-    third, second, first = pressure[-5:-2] ** 2  # at 2, 1 and 0 cells behind the third last
-    bend, slope = 0.5 * (third - 2 * second + first), 0.5 * (third - 4 * second + 3 * first)
-    # first + slope s + bend s**2 = 0, s ahead of the third last centre
-    discriminant = slope**2 - 4 * bend * first
+    # last two. The contact may reach into the next cell, although this cell has no pressure.
+    square_2, square_1, square_0 = pressure[-5:-2] ** 2  # at 2, 1 and 0 cells behind the third last
+    bend, slope = 0.5 * (square_2 - 2 * square_1 + square_0), 0.5 * (square_2 - 4 * square_1 + 3 * square_0)
+    # square_0 + slope s + bend s**2 = 0, s ahead of the third last centre
+    discriminant = slope**2 - 4 * bend * square_0
     if discriminant < 0 or slope >= 0:
         return 1.0
-    distance = 2 * first / (np.sqrt(discriminant) - slope)
+    distance = 2 * square_0 / (np.sqrt(discriminant) - slope)
     # 1.5 cells lie between the third last centre and the inner border of the last cell.
     return float(np.clip(distance - 1.5, *LEADING_LENGTH_RANGE))
 
@@ -166,9 +166,9 @@ def solve_tractions(
     """Tractions under a pressure; `previous` is a guess under a similar pressure with leading edges to retain."""
     grid, motion = surfaces.grid, request.motion
     bound = np.asarray(request.friction * pressure)
-    rolling = isinstance(motion, Rolling)
+    is_rolling = isinstance(motion, Rolling)
     weights = averaging_weights(grid.x, grid.widths, grid.dy)
-    if rolling:
+    if is_rolling:
         cells = RollingCells.of(pressure, bound, weights)
     else:
         loaded = bound > 0
@@ -184,8 +184,8 @@ def solve_tractions(
         return solve_strips(motion, surfaces, bound)
     displacements = surfaces.operator.compute_displacements({Load.NORMAL: pressure}, TANGENTIAL)
     if request.start is not None:
-        for direction, initial in surfaces.operator.compute_displacements(request.start, TANGENTIAL).items():
-            displacements[direction] = displacements[direction] - initial
+        for direction, start_displacement in surfaces.operator.compute_displacements(request.start, TANGENTIAL).items():
+            displacements[direction] = displacements[direction] - start_displacement
 
     def solve(cells: RollingCells, tolerance: float, guess: Guess | None) -> Tractions:
         problem = _coulomb_problem(motion, surfaces, cells, displacements)
@@ -200,17 +200,18 @@ def solve_tractions(
         if coarse is None and cells.offset.size >= NESTED_CELLS:
             coarse = _solve_coarse(request, settings, surfaces, pressure, bound)
         guess = None if coarse is None else guess_from_coarse(coarse, cells, motion.modes)
-        previous = solve(cells, max(settings.tolerance, COARSE_TOLERANCE) if rolling else settings.tolerance, guess)
-        if not rolling:
+        previous = solve(cells, max(settings.tolerance, COARSE_TOLERANCE) if is_rolling else settings.tolerance, guess)
+        if not is_rolling:
             return previous
         if not previous.converged:
-            return _with_mean_slip(previous, surfaces, displacements)
+            return _average_slip(previous, surfaces, displacements)
         steps = previous.steps
     # Slipping edges that each pressure of a coupled contact determined anew would alternate.
-    leading = previous.leading or LeadingEdges(find_slipping_edges(previous.sticks, bound > 0), pressure)
-    cells = RollingCells.of(pressure, bound, weights, leading)
+    leading_edges = previous.leading or LeadingEdges(find_slipping_edges(previous.sticks, bound > 0), pressure)
+    cells = RollingCells.of(pressure, bound, weights, leading_edges)
     tractions = solve(cells, settings.tolerance, guess_from_last(previous, cells, motion.modes))
-    return replace(_with_mean_slip(tractions, surfaces, displacements), steps=steps + tractions.steps, leading=leading)
+    averaged = _average_slip(tractions, surfaces, displacements)
+    return replace(averaged, steps=steps + tractions.steps, leading=leading_edges)
 
 
 def find_slipping_edges(sticks: BoolArray, loaded: BoolArray) -> BoolArray:
@@ -221,14 +222,14 @@ def find_slipping_edges(sticks: BoolArray, loaded: BoolArray) -> BoolArray:
 
 
 def _coulomb_problem(
-    motion: Shift | Rolling, surfaces: Surfaces, cells: RollingCells, displaced: Mapping[Load, FloatArray]
+    motion: Shift | Rolling, surfaces: Surfaces, cells: RollingCells, load_displacements: Mapping[Load, FloatArray]
 ) -> CoulombProblem:
-    """Coulomb's law on the cells, with the displacement under the pressure and the initial tractions."""
-    grid, rolling = surfaces.grid, isinstance(motion, Rolling)
+    """Coulomb's law on the cells, with the displacements under the pressure and the tractions at the start."""
+    grid, is_rolling = surfaces.grid, isinstance(motion, Rolling)
 
     def elastic_slip(displacements: Mapping[Load, FloatArray]) -> FloatArray:
         """Slip (2, unknown) due to displacements."""
-        if rolling:
+        if is_rolling:
             return np.stack([cells.derivative(displacements[direction], grid.dy) for direction in TANGENTIAL])
         return np.stack([-displacements[direction][cells.is_unknown] for direction in TANGENTIAL])
 
@@ -240,20 +241,20 @@ def _coulomb_problem(
     rows, columns = cells.unknown
     x, y = grid.x[rows], grid.y[columns] + cells.offset * grid.dy
     unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
-    rigid = elastic_slip(displaced) + sum(
+    rigid = elastic_slip(load_displacements) + sum(
         (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes), np.zeros((2, 1))
     )  # eq. (44)
     mode_weights = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
         apply_compliance=apply_compliance,
-        inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
+        inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=is_rolling),
         bound=cells.limits,
         rigid=rigid,
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
         resultant_weights=mode_weights.reshape(len(modes), *rigid.shape),
         resultants=np.array(list(motion.resultants.values())),
         relative_areas=np.broadcast_to(grid.weights, grid.shape)[cells.is_unknown],
-        symmetric=not rolling,
+        symmetric=not is_rolling,
     )
 
 
@@ -306,23 +307,23 @@ def _complete_tractions(
     )
 
 
-def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displacements: Mapping[Load, FloatArray]) -> Tractions:
+def _average_slip(tractions: Tractions, surfaces: Surfaces, displacements: Mapping[Load, FloatArray]) -> Tractions:
     """Tractions of rolling with the frictional work per distance, and the mean slip of each slipping cell."""
-    # Means over cells are central differences: by reciprocity the sum then equals the work of the rigid slip. The slip
-    # is scaled to that work (without slip the sum is an error of the differences); a cell inside which slip begins
-    # counts as sticking; next to a cell without pressure the slip is kept.
+    # Means over cells are central differences, whose work equals the work of the rigid slip by reciprocity. The slip is
+    # scaled to this work (without slip the work is an error of the differences). A cell in which slip begins counts
+    # as sticking; a cell next to a cell without pressure retains its slip.
     grid, traction = surfaces.grid, tractions.traction
     loads = dict(zip(TANGENTIAL, traction, strict=True))
     response = surfaces.operator.compute_displacements(loads, TANGENTIAL)
-    total = np.stack([displacements[direction] + response[direction] for direction in TANGENTIAL])
-    mean = np.gradient(total, grid.dy, axis=2)  # eq. (44)
+    displacement = np.stack([displacements[direction] + response[direction] for direction in TANGENTIAL])
+    mean_slip = np.gradient(displacement, grid.dy, axis=2)  # eq. (44)
     for name, amplitude in tractions.rigid.items():
-        mean += amplitude * surfaces.rigid_slip(name, grid.x[:, None], grid.y)
-    work = float((traction * mean * surfaces.areas).sum())
-    size = np.hypot(*traction)
-    direction = traction / np.where(size > 0, size, 1.0)
-    is_loaded = np.pad(size > 0, ((0, 0), (1, 1)))
-    slip_along_traction = (mean * direction).sum(axis=0)
+        mean_slip += amplitude * surfaces.rigid_slip(name, grid.x[:, None], grid.y)
+    work = float((traction * mean_slip * surfaces.areas).sum())
+    traction_size = np.hypot(*traction)
+    direction = traction / np.where(traction_size > 0, traction_size, 1.0)
+    is_loaded = np.pad(traction_size > 0, ((0, 0), (1, 1)))
+    slip_along_traction = (mean_slip * direction).sum(axis=0)
     slips_inside = is_loaded[:, :-2] & is_loaded[:, 2:] & ~tractions.sticks & (slip_along_traction > 0)
     slip = np.where(slips_inside, slip_along_traction * direction, tractions.slip)
     cells_work = float((traction * slip * surfaces.areas).sum())
@@ -336,20 +337,20 @@ def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, 
     factor = cells.bound.shape[0] // coarse.bound.shape[0]
     fraction = coarse.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
     # Slipping cells carry their bound; inside the stick zone the traction over the bound is interpolated.
-    parents = row // factor, column // 2
+    parent_cells = row // factor, column // 2
     fine_fraction = halve_cells(fraction, 2)
     if factor == 2:
         fine_fraction = halve_cells(fine_fraction, 1)
     interpolated = fine_fraction[:, row, column]
     size = np.hypot(*interpolated)
     limited = interpolated * np.minimum(1.0, MAX_STICKING_RATIO / np.where(size > 0, size, 1.0))
-    sticks = coarse.sticks[parents]
-    traction = np.where(sticks, limited, fraction[:, parents[0], parents[1]]) * cells.limits
+    sticks = coarse.sticks[parent_cells]
+    traction = np.where(sticks, limited, fraction[:, parent_cells[0], parent_cells[1]]) * cells.limits
     return Guess(traction, np.array([coarse.rigid[name] for name in modes]))
 
 
 def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
-    """Guess from tractions on the same cells under a similar bound."""
+    """Guess from previous tractions on the same cells under a similar bound."""
     traction, limit = previous.traction[:, cells.is_unknown], cells.limits
     size = np.hypot(*traction)
     limited = np.where(previous.sticks[cells.is_unknown], np.minimum(size, MAX_STICKING_RATIO * limit), limit)
@@ -365,13 +366,14 @@ class TangentialInverse:
     """Inverse of the tangential compliance, or of its reversed derivative along y, on uniform cells."""
 
     def __init__(self, materials: list[Material], cells: IntArray, cell: tuple[float, float], *, rolling: bool) -> None:
-        first = cells.min(axis=1)
-        self._cells, self._root = tuple(cells - first[:, None]), _leading_root(cells, rolling=rolling)
-        size = cells.max(axis=1) - first + 1
-        self._shape = tuple(fft.next_fast_len(int(2 * count), real=True) for count in size)
+        first_cell = cells.min(axis=1)
+        self._cells, self._root = tuple(cells - first_cell[:, None]), _leading_root(cells, rolling=rolling)
+        window_size = cells.max(axis=1) - first_cell + 1
+        self._shape = tuple(fft.next_fast_len(int(2 * count), real=True) for count in window_size)
         x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
         kernels = _compliances(materials, lambda response, poisson: surface_kernel(response, poisson, x, y, cell))
-        xx, xy, yy = (_spectrum(kernel, pair, self._shape) for kernel, pair in zip(kernels, COMPONENTS, strict=True))
+        responses = zip(kernels, COMPONENTS, strict=True)
+        xx, xy, yy = (_spectrum(kernel, response, self._shape) for kernel, response in responses)
         if rolling:
             derivative = _derivative(self._shape[1], cell[1])
             xx, xy, yy = derivative * xx, derivative * xy, derivative * yy
@@ -386,9 +388,9 @@ class TangentialInverse:
         scale = float(np.abs(slip).max()) or 1.0
         spectra = []
         for component in slip:
-            layer = np.zeros(self._shape, np.float32)
-            layer[self._cells] = component / scale
-            spectra.append(fft.rfft2(layer))
+            padded_slip = np.zeros(self._shape, np.float32)
+            padded_slip[self._cells] = component / scale
+            spectra.append(fft.rfft2(padded_slip))
         xx, xy, yy = self._inverse
         solution = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
         tractions = np.stack([fft.irfft2(spectrum, self._shape)[self._cells] for spectrum in solution]).astype(
@@ -403,10 +405,10 @@ class ColumnsInverse:
     # After a transform along y, with components along y times i, the compliance is a real matrix per wavenumber.
 
     def __init__(self, materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool) -> None:
-        (first, start), (last, stop) = cells.min(axis=1), cells.max(axis=1)
-        self._cells, self._root = tuple(cells - np.array([[first], [start]])), _leading_root(cells, rolling=rolling)
-        edges, count = grid.x_edges[first : last + 2], int(stop - start + 1)
-        self._rows, self._padded = int(last - first + 1), 2 * count
+        (first_x, first_y), (last_x, last_y) = cells.min(axis=1), cells.max(axis=1)
+        self._cells, self._root = tuple(cells - np.array([[first_x], [first_y]])), _leading_root(cells, rolling=rolling)
+        edges, count = grid.x_edges[first_x : last_x + 2], int(last_y - first_y + 1)
+        self._rows, self._padded = int(last_x - first_x + 1), 2 * count
         self._widths = np.diff(edges)
         columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=count, extent=(-np.inf, np.inf))
         xx, xy, yy = _compliances(materials, columns.kernel)
@@ -415,12 +417,12 @@ class ColumnsInverse:
 
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Approximate tractions (2, cell) that relieve a slip (2, cell)."""
-        layers = np.zeros((2, self._rows, self._padded))
-        layers[:, *self._cells] = slip / self._root
-        spectra = fft.rfft(layers) / self._derivative
+        padded_slips = np.zeros((2, self._rows, self._padded))
+        padded_slips[:, *self._cells] = slip / self._root
+        spectra = fft.rfft(padded_slips) / self._derivative
         spectra[1] *= -1j
-        pairs = spectra.reshape(2 * self._rows, -1).T
-        solution = np.matmul(self._inverse, np.stack([pairs.real, pairs.imag], axis=-1))
+        vectors = spectra.reshape(2 * self._rows, -1).T
+        solution = np.matmul(self._inverse, np.stack([vectors.real, vectors.imag], axis=-1))
         spectra = (solution[..., 0] + 1j * solution[..., 1]).T.reshape(spectra.shape)
         spectra[1] *= 1j
         tractions = fft.irfft(spectra, self._padded)[:, *self._cells]
@@ -438,8 +440,8 @@ def tangential_inverse(
 
 def _derivative(cell_count: int, dy: float) -> ComplexArray:
     """Spectrum of the reversed derivative along y, by the differences of `RollingCells.derivative`."""
-    # The derivative at b = 1/2, later than in the solver, damps short waves; an added constant, 1.5 times the
-    # derivative of the first wavenumber, makes the derivative of a constant invertible. Speed.
+    # The derivative at b = 1/2, ahead of the solver's, damps short waves. An added constant, 1.5 times the derivative
+    # at the first wavenumber, makes the derivative of a constant invertible. Speed.
     phase = 2 * np.pi * np.arange(cell_count // 2 + 1) / cell_count
     derivative = -(np.exp(1j * phase) - 1.0) / dy
     return np.asarray(derivative + 1.5 * phase[1] / dy)
@@ -447,8 +449,8 @@ def _derivative(cell_count: int, dy: float) -> ComplexArray:
 
 def _leading_root(cells: IntArray, *, rolling: bool) -> FloatArray:
     """Square root with which tractions rise behind the leading edge of each row: array (cell)."""
-    # The derivative along y of the compliance is a Hilbert transform; its inverse on an interval is the inverse on the
-    # whole line, between this factor and its reciprocal.
+    # The derivative along y of the compliance is a Hilbert transform. Its inverse on an interval is the inverse on the
+    # whole line, multiplied by this factor from the left and by its reciprocal from the right.
     if not rolling:
         return np.ones(cells.shape[1])
     row, column = cells

@@ -193,7 +193,7 @@ def test_cells_double_until_changes_meet_accuracy(
     settled = refine_contact(replace(STEEL_CASE, friction=0.0), 0.05, 1e-6)
     cells = settled.contact.shape.grid.cells_y
     maximum = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
-    monkeypatch.setattr(module, "_contact_on_rows", contact_on_cells)
+    monkeypatch.setattr(module, "_solve_on_cells", contact_on_cells)
     monkeypatch.setattr(module, "replace_contact", lambda refined, contact, case: settled)
     _, _, errors = refine_tractions(case, settled, accuracy)
     assert rows == [cells // 2 * 2**index for index in range(min(tried, maximum))]

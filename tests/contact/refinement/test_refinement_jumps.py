@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest_jumps, _jumps
+from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest_jumps, _power_jumps
 
 
 def test_low_crest_jumps_relative_to_own_pressure() -> None:
@@ -27,7 +27,7 @@ def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
     left_columns = np.array([0, 1, 2, 3])  # The middle, 6.5, is the centre of the fifth column.
     pressure = rng.uniform(0.5, 1.0, (8, 5))
     pressure[left_columns] *= lesser
-    computed = _jumps(edges, pressure, 2.0)
+    computed = _power_jumps(edges, pressure, 2.0)
     for i in range(8):
         cell_pressure = pressure[left_columns] if i in left_columns else pressure[4:]
         top = max(cell_pressure.max(), MIN_HALF_PRESSURE * pressure.max())
