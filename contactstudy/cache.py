@@ -33,7 +33,7 @@ class KindInfo(NamedTuple):
 
 
 class CacheInfo(NamedTuple):
-    """State of the store: its limit and its values in bytes, also by kind."""
+    """State of the cache: its limit and the size of its values in bytes, also by kind."""
 
     limit: int
     nbytes: int
@@ -75,8 +75,8 @@ def info() -> CacheInfo:
     with _lock:
         kinds = {
             kind: KindInfo(
-                values=sum(1 for owner, _ in _store if owner == kind),
-                nbytes=sum(nbytes for (owner, _), (_, nbytes) in _store.items() if owner == kind),
+                values=sum(1 for entry_kind, _ in _store if entry_kind == kind),
+                nbytes=sum(nbytes for (entry_kind, _), (_, nbytes) in _store.items() if entry_kind == kind),
                 reused=reused,
                 computed=computed,
             )
@@ -163,9 +163,9 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
 
 def _protect(value: object) -> int:
     """Make the arrays of a value read-only; return its bytes, plus the `added_nbytes` of its later use."""
-    nbytes, visited, pending = 0, set[int](), [value]
-    while pending:
-        item = pending.pop()
+    nbytes, visited, pending_items = 0, set[int](), [value]
+    while pending_items:
+        item = pending_items.pop()
         if id(item) in visited:
             continue
         visited.add(id(item))
@@ -173,11 +173,11 @@ def _protect(value: object) -> int:
             item.flags.writeable = False
             nbytes += item.nbytes
         elif isinstance(item, (list, tuple)):
-            pending += item
+            pending_items += item
         elif isinstance(item, Mapping):
-            pending += item.values()
+            pending_items += item.values()
         elif type(item).__module__.startswith("contactstudy."):
-            pending += vars(item).values()
+            pending_items += vars(item).values()
             nbytes += getattr(item, "added_nbytes", 0)
     return nbytes
 

@@ -89,7 +89,7 @@ def scalar(name: str, value: Any, unit: str = "") -> Any:
         return value
     # Convert through numpy, because a lazy array lacks item().
     number, unit_attribute = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
-    symbol = SI_UNITS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
+    symbol = SI_UNITS.get(unit, unit.partition(",")[0])  # the unit of "m/s, of rolling" is m/s
     if unit_attribute is None or unit_attribute == symbol or isinstance(number, bool) or not isinstance(number, Real):
         return number
     return factor_to(symbol, f"{name}.attrs['units']", unit_attribute) * _float(number)
@@ -217,8 +217,8 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     invalid_indices = np.flatnonzero(~(np.abs(array) <= MAX_MAGNITUDE))
     if invalid_indices.size:
         allowed = f"finite everywhere, of a size up to {MAX_MAGNITUDE:g} ({unit})"
-        index = invalid_indices[0]
-        raise InvalidInputError(name, f"{array[index]} at position {index}", allowed, "units are SI")
+        value = f"{array[invalid_indices[0]]} at position {invalid_indices[0]}"
+        raise InvalidInputError(name, value, allowed, "units are SI")
     return array
 
 

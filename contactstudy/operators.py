@@ -189,9 +189,8 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
 
     def apply(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            cell_loads = vector.reshape(grid.shape)
-            displacements = operator.compute_displacements({load_direction: cell_loads}, (direction,))
-            return np.array(displacements[direction]).ravel()
+            loads = {load_direction: vector.reshape(grid.shape)}
+            return np.array(operator.compute_displacements(loads, (direction,))[direction]).ravel()
 
     def apply_transposed(vector: FloatArray) -> FloatArray:
         with one_blas_thread():

@@ -118,15 +118,15 @@ def read_height_map(
     path : str or Path
         CSV with one line for each point and the columns `x`, `y`, `height`, in any order of the points; or netCDF
         (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. Or an instrument's file,
-        x3p or a format of SurfaceTopography, with the extra `measured`. Coordinates are the grid's.
+        x3p or a format of SurfaceTopography, with the extra `measured`. Positions refer to the grid's axes.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
         linearly along both axes. Cells wider than the steps of the measurement omit or alias short waves: filter
         the map first.
     remove_slope : bool
-        Whether the plane that fits the measured heights best is taken off.
+        Whether to subtract the plane that fits the measured heights best.
     remove_form : bool
-        Whether the surface of second order that fits the measured heights best is taken off: the curvature of roller
+        Whether to subtract the surface of second order that fits the measured heights best: the curvature of roller
         and raceway, and the slope.
     turn : {0, 90, 180, 270}
         Degrees by which the part is turned about the axis of the heights, from x to y.
@@ -180,13 +180,12 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
         Cells; their centres must lie within the map.
     heights : DataArray (x, y)
         Height map on any uniform grid, metres. Between its points heights are interpolated linearly along
-        both axes; on cells that are the grid's they stay as they are.
+        both axes; on the cells of the grid they remain unchanged.
 
     Raises
     ------
     InvalidInputError
-        If `heights` is not a DataArray (x, y) on a uniform grid, contains a value that is not finite, or does not cover
-        the grid.
+        If `heights` is not a DataArray (x, y) on a uniform grid, has a value that is not finite, or misses cells.
 
     Warns
     -----

@@ -132,7 +132,7 @@ def _check_contact(case: Case, contact: Contact) -> Contact:
 
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # of `end_traction_residual` over the half-width. Accuracy.
-RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the same along y. Accuracy.
+RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # its positions along y over the half-width. Accuracy.
 RESIDUAL_COMMENT = (
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
     f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end it is larger, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"
@@ -163,8 +163,8 @@ def with_stresses(
     result = result.assign_coords(field.coords).assign(field.data_vars)
     extremes = label_largest_stress(result, *stresses.maximum).assign(end_traction_residual=stresses.end_residual)
     extremes["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
-    if stresses.further and Load.ALONG_Y in loads:
-        extremes = extremes.assign(label_largest_tension(result, sections, loads, *stresses.further).data_vars)
+    if stresses.further_stresses and Load.ALONG_Y in loads:
+        extremes = extremes.assign(label_largest_tension(result, sections, loads, *stresses.further_stresses).data_vars)
     return result.assign(extremes.data_vars)
 
 
@@ -270,8 +270,8 @@ def solve(
         result = with_stresses(result, contact, x, y, z)
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - start - contact_seconds}
     LOGGER.info("stresses: %.2f s", stages["stresses"])
-    described = describe(result, "roller on an elastic body: contact and stresses")
-    return with_provenance(described, case, settings, stages)
+    described_result = describe(result, "roller on an elastic body: contact and stresses")
+    return with_provenance(described_result, case, settings, stages)
 
 
 def roller_stress(

@@ -60,7 +60,7 @@ def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
     Dataset
         `principal_stress` (..., principal) in Pa, in descending order along the new dimension `principal` = 1, 2, 3,
         and `principal_direction` (..., principal, axis): unit vectors with the components `axis` = x, y, z. The sign
-        of a direction means nothing, nor does a single direction where two principal stresses are equal.
+        of a direction is arbitrary, as are the directions of two equal principal stresses in their plane.
 
     Raises
     ------

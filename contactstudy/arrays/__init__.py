@@ -1,1 +1,1 @@
-"""Arrays and their labels: the grid of cells, the table of variables, stress invariants, measured columns."""
+"""Arrays and their labels: the grid of cells, the table of variables, peaks, and texts of numbers."""

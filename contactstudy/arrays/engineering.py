@@ -28,8 +28,7 @@ def unit_for(size: float, units: str) -> tuple[float, str]:
         return 1.0, ""
     candidates = UNITS.get(units, ((0.0, 1.0, units),))
     rounded_up = abs(size) * (1 + ROUNDING)
-    factor, name = next((entry[1:] for entry in candidates if rounded_up >= entry[0]), candidates[-1][1:])
-    return factor, name
+    return next((entry[1:] for entry in candidates if rounded_up >= entry[0]), candidates[-1][1:])
 
 
 def format_value(value: float, digits: int = DIGITS) -> str:

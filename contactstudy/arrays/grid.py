@@ -15,7 +15,7 @@ SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above sing
 MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy.
 WIDTH_RATIO = 3.0  # Ratio of neighbouring widths outside the contact. Speed.
 EDGE_ROUNDING = 1e-12  # Rounding of the edges, and least width of a cell, over the grid's length. Rounding.
-TOP_ERROR = 0.02  # Relative error of stresses on the top under a pressure of cells, docs/explanation/limits. Accuracy.
+TOP_ERROR = 0.02  # Relative error of stresses on the top due to uniform cell pressures (explanation/limits). Accuracy.
 MAX_CELLS = 10**8  # Largest number of cells; more suggest a wrong unit. Limit.
 
 
@@ -152,7 +152,7 @@ class Grid:
     def observes_means(self) -> bool:
         """Whether gap and displacement are means over the width of each cell, not values at the cell's centre."""
         # Gap, operator and preconditioner must all use means, or all use centres. Means make the operator symmetric on
-        # cells of different widths; on uniform cells centres give smaller errors (sphere's peak 1.5, rolling 4 times).
+        # cells of different widths; on uniform cells centres err less (sphere's peak 1.5, rolling 4 times).
         return not self.uniform
 
     @property
@@ -201,7 +201,7 @@ class Grid:
 
     @property
     def y(self) -> FloatArray:
-        """Cell centres along y, metres; exactly symmetric when the range is."""
+        """Cell centres along y, metres; exactly symmetric for a symmetric range."""
         mid_y = 0.5 * (self.y_range[0] + self.y_range[1])
         return np.asarray(mid_y + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
 

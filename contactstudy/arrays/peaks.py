@@ -16,8 +16,8 @@ def section_maxima(pressure: FloatArray) -> FloatArray:
     """Largest pressure of each cross-section, interpolated between the cells along y of `pressure` (x, y)."""
     # The squared pressure is nearly a parabola across the contact, through the largest cell and its neighbours.
     squared = pressure**2
-    centre = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
-    lower, central, upper = (squared[np.arange(centre.size), centre + step] for step in (-1, 0, 1))
+    central_cell = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
+    lower, central, upper = (squared[np.arange(central_cell.size), central_cell + step] for step in (-1, 0, 1))
     second_difference = np.minimum(lower - 2 * central + upper, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         rise = np.where(second_difference < 0, -((upper - lower) ** 2) / (8 * second_difference), 0.0)

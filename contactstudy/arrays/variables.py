@@ -71,9 +71,9 @@ def labels(name: str, base: Variable | None = None, *, coordinate: bool = False)
 
 def name_array(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
     """Return `array` with a name of the table and its unit and meaning."""
-    renamed = array.rename(name)
-    renamed.attrs = labels(name, base)
-    return renamed
+    named_array = array.rename(name)
+    named_array.attrs = labels(name, base)
+    return named_array
 
 
 def package_version() -> str:
@@ -101,7 +101,7 @@ def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
         conventions = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}
         result.attrs = conventions | result.attrs | {"title": title}
     for name in result.coords:
-        # CF: a coordinate has all values, without a fill value.
+        # By the CF conventions a coordinate has no missing values, and no fill value.
         result[name].encoding["_FillValue"] = None
     return result
 
@@ -145,7 +145,7 @@ def in_si(name: str, values: Any, unit: str) -> Any:
 
 
 def require_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
-    """Return a Dataset that must hold some variables, with these and all positions in SI."""
+    """Return a Dataset with the required variables and all positions in SI; raise if a variable is missing."""
     require(dataset, *names, argument=argument)
     units = {name: VARIABLES[name].units for name in names}
     for name, unit in (units | {axis: "m" for axis in POSITIONS if axis in dataset.coords}).items():
@@ -172,8 +172,8 @@ def _factor(name: str, array: xr.DataArray, unit: str) -> float:
 def index_of(dataset: xr.Dataset | xr.DataArray, name: str, value: object, argument: str = "selection") -> int:
     """Return the index of a value of a swept parameter along its dimension."""
     if name not in dataset.indexes:
-        swept = dataset["status"].dims if isinstance(dataset, xr.Dataset) and "status" in dataset else ()
-        raise InvalidInputError(argument, name, f"a swept parameter: {', '.join(map(str, swept)) or 'none'}")
+        swept_dims = dataset["status"].dims if isinstance(dataset, xr.Dataset) and "status" in dataset else ()
+        raise InvalidInputError(argument, name, f"a swept parameter: {', '.join(map(str, swept_dims)) or 'none'}")
     labels = dataset.indexes[name]
     indices = [index for index, label in enumerate(labels) if _equals(value, label)]
     if not indices:
@@ -265,7 +265,7 @@ def _find_grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[
             raise InvalidInputError(
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
-        # The cells follow each other from the body's end.
+        # From the body's end on, each cell begins where the previous cell ends.
         edges_from_end = [extent[0]]
         for centre in centres:
             edges_from_end.append(2 * centre - edges_from_end[-1])

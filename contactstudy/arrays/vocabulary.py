@@ -199,7 +199,7 @@ VARIABLES = {  # all variables by subject, except the names of `RULES`
     "over_reference_peak": Variable(SCALAR, "1", "", "{variable} at its largest, over that of the reference"),
     "position": Variable(SLICE_DIMS, "m", "x_k", "middle of the slice"),
     "width": Variable(SLICE_DIMS, "m", "", "width of the slice"),
-    # Of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory
+    # Of :mod:`contactstudy.fatigue`. The exponents in the unit of a risk are those of its life theory
     "window_remainder": Variable(XZ, "1", "", "stress at the borders of the window over the largest of the passage"),
     "dang_van": Variable(XZ, "Pa", r"\tau + \alpha \sigma_h", "Dang Van's equivalent shear stress"),
     "dang_van_shear": Variable(XZ, "Pa", r"\tau", "shear at the worst instant"),

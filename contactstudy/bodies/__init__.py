@@ -1,4 +1,4 @@
-"""Elastic bodies: material, ends, a second body in its place, and the Hertz line contact."""
+"""Elastic bodies: material, free ends, counterbody, the Hertz line contact; and lubricants."""
 
 from contactstudy.bodies import materials
 from contactstudy.bodies.lubricant import Lubricant

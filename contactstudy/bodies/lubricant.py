@@ -13,7 +13,7 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
 ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa. Physics.
-ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s. Physics.
+ROELANDS_VISCOSITY = 6.31e-5  # Viscosity of every oil at the negative pole of Roelands' law, Pa s. Physics.
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1. Physics.
 BARUS_PRESSURE = 0.5e9  # Pressure to which Barus' law holds, Pa. Physics.
 MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid. Physics.
@@ -101,7 +101,7 @@ class Lubricant:
 
     def viscosity_at(self, pressure: FloatArray | float) -> FloatArray:
         """Dynamic viscosity at pressures in Pa, Pa s."""
-        # The bound prevents an overflow of the cubed exponential.
+        # The bound prevents an overflow of the viscosity and its powers.
         return np.asarray(self.viscosity * np.exp(np.minimum(self.log_viscosity(pressure), 400.0)))
 
     def law_holds(self, pressure: FloatArray | float) -> BoolArray:
@@ -223,13 +223,13 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
     # ASTM D341, ``log10 log10(nu + 0.7) = A - B log10 T``, nu in mm2/s and T in kelvin, through two points: eq. (409).
     if not isinstance(viscosities, dict) or len(viscosities) != 2:
         raise InvalidInputError("viscosities", viscosities, "two kinematic viscosities (mm2/s) by temperature (C)")
-    (lower_temperature, thick), (upper_temperature, thin) = sorted(
+    (lower_temperature, high_viscosity), (upper_temperature, low_viscosity) = sorted(
         (checks.finite("viscosities", key), checks.positive("viscosities", value)) for key, value in viscosities.items()
     )
-    if not (thick > thin >= 2 and lower_temperature > -KELVIN):
+    if not (high_viscosity > low_viscosity >= 2 and lower_temperature > -KELVIN):
         allowed = "falling with the temperature, at least 2 mm2/s"
         raise InvalidInputError("viscosities", viscosities, allowed, "the range of ASTM D341")
-    double_logarithms = [np.log10(np.log10(viscosity + 0.7)) for viscosity in (thick, thin)]
+    double_logarithms = [np.log10(np.log10(viscosity + 0.7)) for viscosity in (high_viscosity, low_viscosity)]
     log_temperatures = [np.log10(celsius + KELVIN) for celsius in (lower_temperature, upper_temperature)]
     b = (double_logarithms[0] - double_logarithms[1]) / (log_temperatures[1] - log_temperatures[0])
     kelvin = temperature + KELVIN

@@ -51,7 +51,7 @@ class Body:
         Material of the body.
     reference_depth : float, optional
         Depth (m) of the material line along x, below the load, to which approach and tilt of a contact refer, such as
-        the axis of a roller or the thickness of a ring. Default: one length between two free ends, else far away.
+        the axis of a roller or the thickness of a ring. Default: the length between two free ends; else infinite.
     """
 
     material: Material
@@ -83,7 +83,7 @@ class Body:
         return (BodyTerm(1.0, self.extent),)
 
     def check_span(self, grid: Grid) -> None:
-        """Raise unless a grid covers the body's x from its end, or from end to end, and is in proportion."""
+        """Raise unless a grid begins at the body's end, or spans both ends, with cells and window in proportion."""
         low, high = self.extent
         start, stop = grid.x_range
         # The tolerance allows for rounding of the grid's edge and the body's end.
@@ -219,7 +219,7 @@ class FiniteLengthSpace(BodyWithFreeEnds):
         return (0.0, self.length)
 
 
-ALIGNMENT_TOLERANCE = 1e-6  # Distance over a cell's width at which an edge is at the counterbody's end. Rounding.
+ALIGNMENT_TOLERANCE = 1e-6  # Distance over a cell's width of an edge at the counterbody's end. Rounding.
 
 
 @dataclass(frozen=True)

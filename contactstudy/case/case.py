@@ -221,9 +221,9 @@ class Case:
         if self.load_position is not None:
             allowed = "None where the approach is prescribed"
             raise InvalidInputError("load_position", self.load_position, allowed, "prescribe the load")
-        radius, touch = self.roller.radius, self.first_touch
-        if not MIN_DEPTH * radius < approach - touch <= radius:
-            limits = f"{touch:.3g} m, and beyond it no more than the roller's radius, {radius:g} m"
+        radius, first_touch = self.roller.radius, self.first_touch
+        if not MIN_DEPTH * radius < approach - first_touch <= radius:
+            limits = f"{first_touch:.3g} m, and beyond it no more than the roller's radius, {radius:g} m"
             hint = "approaches are in metres, relative to the contact at a profile drop of 0"
             raise InvalidInputError("approach", approach, f"more than that of first touch, {limits}", hint)
 
@@ -239,7 +239,7 @@ class Case:
 
     @property
     def slope_jumps(self) -> SlopeJumps:
-        """Corners of the gap along the axis, also unresolved ones: positions x, metres, and jumps of the slope."""
+        """Corners of the gap along the axis, unresolved ones included: positions x, metres, and jumps of the slope."""
         start, stop = self.contact_range
         middle = 0.5 * (start + stop)
         corners = find_slope_jumps(lambda x: self.gap_on_axis(middle + x), stop - start)
@@ -339,8 +339,8 @@ class Case:
         is_finite = np.isfinite(axial)
         finite_weights = np.maximum(is_finite @ weights, weights.min())
         mean = np.where(is_finite, axial, 0.0) @ weights / finite_weights
-        at_centre = self._clearance(x, middle_line)[:, 0]
-        correction = np.subtract(mean, at_centre, out=np.zeros_like(mean), where=np.isfinite(at_centre))
+        central_gap = self._clearance(x, middle_line)[:, 0]
+        correction = np.subtract(mean, central_gap, out=np.zeros_like(mean), where=np.isfinite(central_gap))
         return np.asarray(self._clearance(x, grid.y) + correction[:, None])
 
     @property

@@ -101,7 +101,7 @@ def choose_grid(
         while candidates[-1] < MAX_CELL_INCREASE * counts[0]:
             candidates.append(next_fast_len(candidates[-1] + 1))
         ends = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
-        deviations = [np.abs(ends * cells - np.round(ends * cells)).max().round(3) for cells in candidates]
+        deviations = [np.abs(ends * count - np.round(ends * count)).max().round(3) for count in candidates]
         counts[0] = candidates[int(np.argmin(deviations))]
     return Grid(x_range=x_range, y_range=(-half_window, half_window), cells_x=counts[0], cells_y=counts[1])
 

@@ -39,10 +39,10 @@ def check_contact_length(case: Case, grid: Grid, gap: FloatArray, pressure: Floa
     """Raise if a pressure (x, y) of a tilted roller is limited to its end; the gap is finite under the roller."""
     if not case.tilt and case.load_position is None:
         return
-    under_roller = np.flatnonzero(np.isfinite(gap).any(axis=1))
-    in_contact = np.flatnonzero(pressure.any(axis=1))
-    touches_end = in_contact[0] == under_roller[0] or in_contact[-1] == under_roller[-1]
-    length = float(grid.widths[in_contact].sum())
+    roller_columns = np.flatnonzero(np.isfinite(gap).any(axis=1))
+    loaded_columns = np.flatnonzero(pressure.any(axis=1))
+    touches_end = loaded_columns[0] == roller_columns[0] or loaded_columns[-1] == roller_columns[-1]
+    length = float(grid.widths[loaded_columns].sum())
     if touches_end and length < MIN_CONTACT_RATIO * case.hertz_half_width < case.contact_length:
         raise _create_end_contact_error(case, f"not {length:.3g} m")
 
@@ -209,11 +209,11 @@ def _describe_flat_crown(case: Case) -> str:
 
 
 def _describe_half_width(subject: str, half_width: float, detail: str) -> str:
-    """Message on an unusual half-width over the roller's radius, with its rating in the subject; empty if usual."""
-    usual = USUAL_RANGES["half_width"]
-    if usual.minimum <= half_width <= usual.maximum:
+    """Message on an unusual half-width over the roller's radius; "low" or "high" fills the braces of `subject`."""
+    usual_range = USUAL_RANGES["half_width"]
+    if usual_range.minimum <= half_width <= usual_range.maximum:
         return ""
-    rating = "low" if half_width < usual.minimum else "high"
+    rating = "low" if half_width < usual_range.minimum else "high"
     return f"{subject.format(rating)}: half-width {half_width:.1g} of the roller's radius, {detail}"
 
 

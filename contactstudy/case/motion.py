@@ -80,7 +80,7 @@ class StickSlip:
     AMPLITUDES: ClassVar[Mapping[str, str]]  # parameter of each rigid motion
 
     def __post_init__(self) -> None:
-        """Check the values, at most one of a motion and its force; the motion is 0 without both."""
+        """Check the values, at most one of a motion and its force; the motion is 0 without either."""
         for mode, name in self.AMPLITUDES.items():
             force = RESULTANTS[mode]
             amplitude, resultant = getattr(self, name), getattr(self, force)
@@ -111,8 +111,7 @@ class StickSlip:
 class Shift(StickSlip):
     """One shift of the roller against the body, from rest, with Coulomb friction.
 
-    Along each axis either the shift or its force is prescribed. `solve_contact` can start from the result of a previous
-    step.
+    Along each axis either the shift or its force is prescribed. `solve_contact` can start from the last step's result.
 
     Parameters
     ----------
@@ -199,7 +198,7 @@ class Rolling(StickSlip):
 
     @property
     def speeds(self) -> SurfaceSpeeds | None:
-        """Speeds of the surfaces, opposite to the contact's; a free creepage is treated as 0."""
+        """Speeds of the surfaces, opposite to the contact's speed; an unknown creepage counts as 0."""
         return None if self.speed is None else self.speeds_at(self.longitudinal_creepage or 0.0)
 
     def speeds_at(self, creepage: float) -> SurfaceSpeeds:

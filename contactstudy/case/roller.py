@@ -20,8 +20,8 @@ ROUNDING = 1e-9  # Distance from a roller's end over a cell's width that counts 
 
 def snap_to_ends(x: FloatArray, half_length: float, width: float) -> FloatArray:
     """Move distances of cells' centres from mid-length onto the roller's ends if within rounding."""
-    at_end = np.abs(np.abs(x) - half_length) <= ROUNDING * width
-    return np.where(at_end, np.copysign(half_length, x), x)
+    is_at_end = np.abs(np.abs(x) - half_length) <= ROUNDING * width
+    return np.where(is_at_end, np.copysign(half_length, x), x)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class Roller:
         Model of an elastic roller: a body of its length with free ends, or a half-space.
     reference_depth : float, optional
         Distance (m) from the contact to the line in an elastic roller to which approach and tilt refer, such as its
-        axis. Default: the roller's length with free ends, else far away.
+        axis. Default: the roller's length with free ends; else infinite.
 
     Raises
     ------
@@ -64,7 +64,7 @@ class Roller:
     reference_depth: float | None = field(default=None, metadata=checks.number(checks.positive, "metres"))
 
     def __post_init__(self) -> None:
-        """Check the geometry; a trial of the profile reveals errors before a study."""
+        """Check the geometry, and evaluate the profile to reveal its errors before a study."""
         checks.store_numbers(self)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
         checks.instance("material", self.material, Material | None, "a Material, or None for a rigid roller")

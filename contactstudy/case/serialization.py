@@ -46,7 +46,7 @@ class Sampled(Shape):
         return np.where(np.isnan(interpolated), np.inf, interpolated)
 
 
-KINDS: dict[str, type[Any]] = {  # Classes of a case and its parts, by name
+KINDS: dict[str, type[Any]] = {  # classes of a case and its components, by name
     kind.__name__: kind
     for kind in (
         *(Case, Roller, Lubricant, Material, HalfSpace, QuarterSpace, FiniteLengthSpace),
@@ -57,7 +57,7 @@ KINDS: dict[str, type[Any]] = {  # Classes of a case and its parts, by name
 
 
 def to_dict(component: Any) -> dict[str, Any]:
-    """JSON values, SI, of a case or one of its parts, with ``kind``; a user's profile requires its roller."""
+    """JSON values, SI, of a case or a component, with ``kind``; a user's profile requires its roller."""
     return dict(_to_json(component, 0.0))
 
 
@@ -91,7 +91,7 @@ def tables_within(values: Any) -> Iterator[Mapping[str, Any]]:
 
 
 def from_dict(values: Mapping[str, Any], component_class: type[Component]) -> Component:
-    """Case, or another component of a `component_class`, of the values that `to_dict` returns."""
+    """Case, or a component of the given class, from the values that `to_dict` returns."""
     name = component_class.__name__.lower()
     try:
         component = _from_json(values)

@@ -51,7 +51,7 @@ class Splines:
         return np.repeat(self.edges, repeats)
 
     def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
-        """Functions, or a derivative of them, at points: array (point, function); on an edge of the right element."""
+        """Functions, or their derivatives, at points: array (point, function); at edges those of the right element."""
         spline_count = self._knots.size - self.degree - 1
         function_values = BSpline(self._knots, np.eye(spline_count), self.degree)(points, nu=derivative)
         return np.asarray(function_values[:, self.vanishing_orders : spline_count - self.vanishing_orders])
@@ -124,7 +124,7 @@ GROWTH = 1.5  # ratio of neighbouring elements beyond the cells. Accuracy.
 
 FAR_DISTANCE = 1000.0
 """Without an end: distance of the last element, over the extent of the cells. Accuracy: the error of the stress falls
-with the square of this distance, of the top's displacement with the distance."""
+with the square of this distance, the error of the top's displacement with the distance."""
 
 DEEP_LENGTHS = 8.0
 """Between two ends: depth below the cells at which the elements end, over the length. Accuracy: stress without
@@ -353,7 +353,7 @@ class PeriodicLayers:
     step: float  # distance from one position to the next, metres; negative where y falls
 
     def _matrices(self, degree: int, order: int) -> FloatArray:
-        """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
+        """Stresses (over i if imaginary) in the layers per eigenstrain, over minus the modulus, for every wave."""
         waves, z = 2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)), self.z_edges
         # The elements over depth: the layers, and elements above and below.
         edges_above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]

@@ -67,7 +67,7 @@ def displacement_field(
     positions = field_positions(body, prescribed.grid, x, y, z, labels=prescribed.labels)
     displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
-    # Far from a row of images without end the displacement grows like a logarithm, without an absolute value.
+    # Far from an infinite row of images the displacement grows like a logarithm, without an absolute value.
     reference = min(reference_distance(term.extent) for term in body.terms)
     if np.isfinite(reference):
         for name in COMPONENTS:
@@ -103,7 +103,7 @@ def displacement_under(
     return displacement
 
 
-POSITIONS_PER_BATCH = 32  # positions along x per evaluation. Speed: memory.
+POSITIONS_PER_BATCH = 32  # positions along x per evaluation, for bounded memory. Speed.
 
 
 def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float) -> FloatArray:

@@ -43,7 +43,7 @@ class EdgeSections(NamedTuple):
 
     @classmethod
     def of(cls, grid: Grid, loads: Loads, gap: FloatArray, columns: IntArray | None = None) -> EdgeSections:
-        """Sections in those columns with enough cells; default: under the largest pressures and in the middle."""
+        """Sections in columns with enough loaded cells; default: under the largest pressures and in the middle."""
         pressure = loads[Load.NORMAL].values
         if columns is None:
             maxima, middle = pressure.max(axis=1), grid.cells_x // 2
@@ -100,8 +100,7 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     result : Dataset
         A result of :func:`contactstudy.solve` of one case in full sliding, with its inputs; stresses may be absent.
     x : sequence of float, optional
-        Positions along the axis, metres, moved to the nearest column; default: the columns of the largest pressure of
-        either half and mid-length.
+        Positions along the axis, metres, moved to the nearest column; default: mid-length and either half's peak.
 
     Returns
     -------

@@ -176,7 +176,7 @@ class ContactStresses(NamedTuple):
     field: xr.Dataset  # at positions
     end_residual: float  # residual on the free ends
     maximum: StressMaximum  # largest stress in the body
-    further: list[FloatArray]  # at further sets of points: arrays (6, x, y, z)
+    further_stresses: list[FloatArray]  # at further sets of points: arrays (6, x, y, z)
 
 
 def contact_stresses(

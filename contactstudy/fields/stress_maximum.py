@@ -1,8 +1,7 @@
 """The largest von Mises stress in a body.
 
 The search evaluates points around the peaks of the pressure and along the contact, and refines them about the largest
-values until polynomials of two degrees agree (docs/explanation/numerics.md). On the top it evaluates the centres of
-cells inside the contact.
+values until polynomials of two degrees agree (docs/explanation/numerics.md). On the top it takes cells in contact.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ END_DISTANCES = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20
 
 LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # along y, over the half-width of the section. Accuracy.
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width. Accuracy.
-MIN_SECOND_PEAK = 0.6  # least peak over the largest for a search around it, because of free ends. Accuracy.
+MIN_SECOND_PEAK = 0.6  # least searched peak over the largest: near a free end it may cause more stress. Accuracy.
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound. Rounding.
 BORDER_SHIFT = 0.15  # error of a border of stick and slip, over a cell, in Carter's contact. Accuracy.
 RIM_CELLS = 1  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
@@ -78,8 +77,8 @@ class Border:
             border_error[column, second_row] = BORDER_SHIFT * abs(next_pressure - first_pressure)
         # Without a representing cell the cusp is missed. At the distance d from a narrow stick zone at the leading edge
         # of Carter's contact, here half a cell, the stress is lower by ``f p sqrt(2 d / a)``.
-        cells = np.maximum(np.count_nonzero(pressure, axis=1), 1)
-        missed_error = (is_missed * bound * pressure).max(axis=1) * np.sqrt(2 / cells)
+        cell_counts = np.maximum(np.count_nonzero(pressure, axis=1), 1)
+        missed_error = (is_missed * bound * pressure).max(axis=1) * np.sqrt(2 / cell_counts)
         self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
         self.represents = represents  # (x, y): whether the cell represents a border
         self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
@@ -308,13 +307,13 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
     column, row, _ = sample.indices
     cell = columns[column], rows[row]
     error = float(np.hypot(TOP_ERROR * sample.maximum.value, search.border.error[cell]))
-    for line, is_inside, index in (
+    for line_values, is_inside, index in (
         (values[:, row], inside_rim[:, row], column),
         (values[column], inside_rim[column] | search.border.represents[cell], row),
     ):
         neighbours = slice(max(index - 1, 0), index + 2)
         if not is_inside[neighbours].all():
-            error = max(error, (RIM_CELLS + 1) * float(np.ptp(line[neighbours][is_inside[neighbours]])))
+            error = max(error, (RIM_CELLS + 1) * float(np.ptp(line_values[neighbours][is_inside[neighbours]])))
     return sample.maximum._replace(error=error)
 
 
@@ -351,7 +350,7 @@ def _evaluate_at_maximum(
 ) -> StressMaximum:
     """Evaluate the stress at a maximum of polynomials that may overshoot, at an edge or without agreement."""
     sample_position = [axis[index] for axis, index in zip(sample.points, sample.indices, strict=True)]
-    corners = Points(*(np.unique(pair) for pair in zip(sample.maximum.position, sample_position, strict=True)))
+    corners = Points(*(np.unique(ends) for ends in zip(sample.maximum.position, sample_position, strict=True)))
     maximum = _maximum_of_samples(corners, stress_at(corners)).maximum
     return maximum._replace(error=max(error, abs(sample.maximum.value - maximum.value)))
 

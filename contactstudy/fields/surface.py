@@ -66,9 +66,9 @@ class UniformOperator:
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cell centres in some `directions` under `loads` (Pa): arrays (x, y)."""
         spectra, projected_loads = {}, {}
-        for load, cells in loads.items():
+        for load, cell_loads in loads.items():
             transform = self._load_transforms[load]
-            lateral = transform.transform_y(load.sign_x * cells[::-1] if self._is_reversed else cells)
+            lateral = transform.transform_y(load.sign_x * cell_loads[::-1] if self._is_reversed else cell_loads)
             if self._correction is not None:
                 projected_loads[load] = self._correction.project_loads(load, lateral)
             spectra[load] = transform.transform_x()
@@ -114,7 +114,7 @@ class UniformOperator:
 
     @cached_property
     def _inverse(self) -> FloatArray:
-        # The constant's entry depends on the reference only; the next entry replaces it.
+        # The entry of wavenumber 0 depends on the reference only; the largest entry next to it replaces it.
         spectrum = self._spectra[NORMAL_RESPONSE].copy()
         spectrum[0, 0] = 0.0
         spectrum[0, 0] = spectrum[:2, :2].max()
@@ -223,7 +223,7 @@ class ColumnsOperator:
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
-        spectra = {load: self._transform_y(self._widths * cells) for load, cells in loads.items()}
+        spectra = {load: self._transform_y(self._widths * cell_loads) for load, cell_loads in loads.items()}
         displacements = {}
         for direction in directions:
             total = np.zeros(1, np.complex128)
@@ -238,9 +238,9 @@ class ColumnsOperator:
         """Approximate pressure for a normal displacement `gap`."""
         return self._invert_y(_multiply_matrices(self._inverse, self._transform_y(gap))) / self._widths
 
-    def _transform_y(self, cells: FloatArray) -> ComplexArray:
+    def _transform_y(self, values: FloatArray) -> ComplexArray:
         """Transform along y: array (wavenumber, cell)."""
-        return np.ascontiguousarray(fft.rfft(cells, n=2 * self.grid.cells_y, axis=1).T)
+        return np.ascontiguousarray(fft.rfft(values, n=2 * self.grid.cells_y, axis=1).T)
 
     def _invert_y(self, spectrum: ComplexArray) -> FloatArray:
         """Values on the cells from their transform along y (wavenumber, cell)."""
@@ -425,8 +425,8 @@ def surface_displacement(
     2.24
     """
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    selected = "z" if components is None else components
-    axes = [checks.known_name("components", axis, DIRECTIONS) for axis in selected]
+    selected_axes = "z" if components is None else components
+    axes = [checks.known_name("components", axis, DIRECTIONS) for axis in selected_axes]
     directions = tuple(dict.fromkeys(DIRECTIONS[axis] for axis in axes))
     if not directions:
         raise InvalidInputError("components", components, "at least one of x, y and z, or None")

@@ -86,8 +86,8 @@ class Asperities:
             ratio = distance / scale
             contact_fraction = 0.5 * (1 + erf(ratio / np.sqrt(2)))
             # At ratios far below zero the two terms cancel.
-            gauss = np.exp(-0.5 * np.minimum(ratio**2, 1e3)) / np.sqrt(2 * np.pi)
-            film = scale * np.maximum(ratio * contact_fraction + gauss, gauss / (2 + ratio**2))  # eq. (413)
+            gaussian = np.exp(-0.5 * np.minimum(ratio**2, 1e3)) / np.sqrt(2 * np.pi)
+            film = scale * np.maximum(ratio * contact_fraction + gaussian, gaussian / (2 + ratio**2))  # eq. (413)
             return Law(film, np.maximum(contact_fraction, 1e-300))
 
         return law

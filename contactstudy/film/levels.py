@@ -88,7 +88,7 @@ class FilmResolution:
     dry_tolerance: float = 1e-5
 
     def __post_init__(self) -> None:
-        """Check the window, to which the errors of the cells do not refer."""
+        """Check the window, whose effect the estimated errors omit."""
         for name, (shortest, longest) in WINDOW_RANGES.items():
             if not shortest <= checks.positive(name, length := getattr(self, name)) <= longest:
                 hint = "`inlet` of solve_film is the position of a meniscus" if name == "inlet" else ""
@@ -346,14 +346,14 @@ class FilmOnCells(NamedTuple):
 
 
 def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
-    """Return the cells of a level, and those along y as merged cells."""
+    """Return the cells of a level, and the uniform cells along y of which they are merged."""
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
     min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
     narrow_columns = [(end, min_dx) for end in film.contact_ends]
-    narrow_columns += [(closure, max(min_dx, column_scale * width)) for closure, width in level.closures]
+    narrow_columns += [(position, max(min_dx, column_scale * width)) for position, width in level.closures]
     max_width = min(resolution.widest_column, 0.2 * (stop - start))
 
     def column_width(x: float) -> float:

@@ -98,8 +98,8 @@ class FilmProblem:
 
     def create_state(self, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
         """Return a state with the mismatch of the given values."""
-        rigid = (motion @ self.motions).reshape(self.gap.shape)
-        return FilmState(pressure, motion, distance, distance - self.gap - self.displace(pressure) - rigid)
+        rigid_displacement = (motion @ self.motions).reshape(self.gap.shape)
+        return FilmState(pressure, motion, distance, distance - self.gap - self.displace(pressure) - rigid_displacement)
 
     def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
         """Distance of the surfaces at a mean film, by Newton's method for the film's logarithm from a `start`."""
@@ -302,7 +302,7 @@ class _Iteration:
         cell_count = problem.gap.size
         pressure, motion = change[:cell_count].reshape(problem.gap.shape), change[cell_count:]
         distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
-        # Under a sharp end it exceeds p0 by powers of ten; a spike of the film's pressure does not affect it.
+        # Under a sharp end the Hertz pressure exceeds p0 by powers of ten; a spike of the film has no effect on it.
         hertz_pressure = np.sqrt(2 / np.pi * float((state.pressure @ problem.cells.lengths).max()))
         max_change = float(np.abs(pressure).max()) / hertz_pressure
         step_fraction = min(1.0, settings.max_pressure_change / max(max_change, 1e-300))

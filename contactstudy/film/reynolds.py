@@ -152,7 +152,7 @@ class FilmCells:
         *matrices, outflow = _difference_matrices(self.x_edges, self.x, closed=not self.open_ends)
         per_width = sparse.diags_array(1 / self.widths) @ outflow
         factors = [*((matrix, columns) for matrix in matrices), (per_width, sparse.diags_array(self.lengths))]
-        return Faces(*(sparse.csr_array(sparse.kron(*pair)) for pair in factors))
+        return Faces(*(sparse.csr_array(sparse.kron(along_x, along_y)) for along_x, along_y in factors))
 
     @cached_property
     def parabolas(self) -> sparse.csr_array:
@@ -215,13 +215,13 @@ class Faces:
     gradient: sparse.csr_array  # beyond the outermost faces the pressure is ambient
     outflow: sparse.csr_array  # (cell, face): net outflow of the cells per flow through the faces
 
-    def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> Flow:
-        """Flow that the reduced pressure's gradient drives, eq. (402); it rises with any pressure step."""
+    def conduct_flow(self, flow_number: float, reduced_pressure: Law, height: FloatArray) -> Flow:
+        """Flow that the reduced pressure's gradient drives, eq. (402); it rises with the pressure difference."""
         # The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = -2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
-        slopes = self.gradient @ reduced.value
-        pressure_jacobian = scale_columns(scale_rows(factor, self.gradient), reduced.slope)
+        slopes = self.gradient @ reduced_pressure.value
+        pressure_jacobian = scale_columns(scale_rows(factor, self.gradient), reduced_pressure.slope)
         upstream_jacobian, downstream_jacobian = (
             scale_rows(factor * slopes * (2 / film - 1 / (upstream + downstream)), selection)
             for film, selection in ((upstream, self.upstream), (downstream, self.downstream))
@@ -230,7 +230,7 @@ class Faces:
 
 
 def _difference_matrices(edges: FloatArray, centres: FloatArray, *, closed: bool) -> tuple[sparse.sparray, ...]:
-    """Matrices of `Faces` for one row of cells; the gradient on outermost faces is that to a value of zero, or zero."""
+    """Matrices of `Faces` for a row of cells; outermost gradients lead to a value of zero or, if `closed`, are zero."""
     count = centres.size
     identity = sparse.eye_array(count, format="csr")
     upstream, downstream = sparse.vstack([identity[:1], identity]), sparse.vstack([identity, identity[-1:]])

@@ -117,9 +117,9 @@ def solve_film(
     film = create_film_case(case, asperities, inlet, resolution)
     warn_of_magnitudes(case)
     max_error = checks.positive("accuracy", accuracy)
-    low, high = ACCURACIES
-    if not low <= max_error <= high:
-        raise InvalidInputError("accuracy", max_error, f"from {low:g} to {high:g} of the central film")
+    if not ACCURACIES[0] <= max_error <= ACCURACIES[1]:
+        allowed = f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film"
+        raise InvalidInputError("accuracy", max_error, allowed)
     start_time = time.perf_counter()
     if start is not None:
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
@@ -129,9 +129,8 @@ def solve_film(
             level_film = continue_solution(film, refined_film.level_film, settings)
     except StepFailedError as error:
         raise _create_film_error(error, film.half_width) from None
-    solutions = [*refined_film.solutions, level_film.solution]
-    refined_film = refined_film._replace(level_film=level_film, solutions=solutions)
-    result = _label_film(film, refined_film)
+    continued = refined_film._replace(level_film=level_film, solutions=[*refined_film.solutions, level_film.solution])
+    result = _label_film(film, continued)
     seconds = time.perf_counter() - start_time
     relative_error = max(float(result[f"{name}_error"]) for name in FILM_NAMES) / float(result["central_film"])
     if relative_error > max_error:
@@ -142,12 +141,12 @@ def solve_film(
             stacklevel=2,
         )
     _warn_of_viscosity(film, level_film)
-    described = describe(result, "lubricated contact of a roller with an elastic body")
-    labelled = without_error(described, "slice_film", "approach", "tilt")
+    described_result = describe(result, "lubricated contact of a roller with an elastic body")
+    labelled_result = without_error(described_result, "slice_film", "approach", "tilt")
     errors = {name: values.tolist() for name, values in refined_film.direction_errors.items()}
-    cells = {"level": level_film.level._asdict(), "direction_errors": errors}
-    recorded_arguments = {"accuracy": max_error, **film.settings, **cells}
-    return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
+    refinement = {"level": level_film.level._asdict(), "direction_errors": errors}
+    recorded_arguments = {"accuracy": max_error, **film.settings, **refinement}
+    return with_provenance(labelled_result, case, recorded_arguments, {"film": seconds})
 
 
 def create_film_case(
@@ -249,13 +248,13 @@ def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
     """Errors of the films from their latest two changes by refinement in a direction; infinite before."""
     if len(changes) < 2:
         return np.full(len(FILM_NAMES), np.inf)
-    previous, latest = np.abs(changes[-2:])
+    previous_change, latest_change = np.abs(changes[-2:])
     if direction == "cells":
         # Two refinements halve every cell along y, one refinement halves some, since cells merge in powers of two.
-        return np.asarray(CELLS_SAFETY / 3 * (previous + latest))
-    ratio = np.clip(latest / np.maximum(previous, 1e-300), *ORDER_RATIOS)
+        return np.asarray(CELLS_SAFETY / 3 * (previous_change + latest_change))
+    ratio = np.clip(latest_change / np.maximum(previous_change, 1e-300), *ORDER_RATIOS)
     # The latest change may vanish by chance.
-    return np.asarray(np.maximum(latest, ORDER_RATIOS[0] * previous) * ratio / (1 - ratio))
+    return np.asarray(np.maximum(latest_change, ORDER_RATIOS[0] * previous_change) * ratio / (1 - ratio))
 
 
 def _combine_errors(direction_errors: dict[str, FloatArray], thicknesses: FloatArray) -> FloatArray:

@@ -106,9 +106,9 @@ def film_traction(
     return describe(curve, "traction of a lubricated contact")
 
 
-def shear_stress(oil: Lubricant, pressure: FloatArray, rate: FloatArray) -> FloatArray:
+def shear_stress(oil: Lubricant, pressure: FloatArray, shear_rate: FloatArray) -> FloatArray:
     """Shear stress, Pa, at pressures, Pa, and shear rates, 1/s: Newtonian, Ree-Eyring, and limited, eq. (416)."""
-    stress = np.minimum(oil.viscosity_at(pressure) * rate, checks.MAX_MAGNITUDE)
+    stress = np.minimum(oil.viscosity_at(pressure) * shear_rate, checks.MAX_MAGNITUDE)
     if oil.eyring_stress is not None:
         stress = oil.eyring_stress * np.arcsinh(stress / oil.eyring_stress)
     if oil.limiting_shear is not None:

@@ -294,7 +294,7 @@ def _shaped_jumps(x: FloatArray, groups: list[ColumnGroup], fine: FineCells, max
         inserted_loads = [[] if group.radius else [layer.loads(load) for layer in group.layers] for group in groups]
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
-            start, stop = stop, stop + split_range.inserted.size - 1
+            start, stop = stop, stop + split_range.inserted_edges.size - 1
             rows = column.ravel()[start:stop]
             split_loads = [[layer_loads[rows] for layer_loads in group_loads] for group_loads in inserted_loads]
             yield _jumps_around(position, groups, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
@@ -303,7 +303,7 @@ def _shaped_jumps(x: FloatArray, groups: list[ColumnGroup], fine: FineCells, max
 class _SplitRange(NamedTuple):
     """Columns that replace the columns around a point, and one column more on either side."""
 
-    inserted: FloatArray  # edges of the new columns; one edge without any
+    inserted_edges: FloatArray  # edges of the new columns; a single edge without new columns
     start: int  # first replaced column, and the column behind the last
     stop: int
 
@@ -321,8 +321,8 @@ class _SplitRange(NamedTuple):
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
         if self.start == self.stop:
             return np.zeros((0, fine.count))
-        is_unsplit = np.diff(np.searchsorted(self.inserted, fine.edges)) < 2
-        midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
+        is_unsplit = np.diff(np.searchsorted(self.inserted_edges, fine.edges)) < 2
+        midpoints = 0.5 * (self.inserted_edges[1:] + self.inserted_edges[:-1])
         return fine.moment_loads(is_unsplit)[np.searchsorted(fine.edges, midpoints) - 1]
 
     def jumps(
@@ -331,7 +331,7 @@ class _SplitRange(NamedTuple):
         """Jumps of columns from the `first` on, with the `inserted_loads` loads instead of the replaced ones."""
         start, stop = self.start - first, self.stop - first
         return Jumps(
-            np.concatenate([edges[:start], self.inserted, edges[stop + 1 :]]),
+            np.concatenate([edges[:start], self.inserted_edges, edges[stop + 1 :]]),
             np.concatenate([loads[:start], inserted_loads, loads[stop:]]),
             layer,
         )
@@ -340,7 +340,7 @@ class _SplitRange(NamedTuple):
 def _means_of_inserted(split_ranges: list[_SplitRange], cells: FineCells) -> FloatArray:
     """Mean loads on the inserted columns around all points, with the moments of neighbouring columns: (column, y)."""
     moments = np.concatenate([split_range.moment_loads(cells) for split_range in split_ranges])
-    return np.asarray(cells.column_means([split_range.inserted for split_range in split_ranges]) + moments)
+    return np.asarray(cells.column_means([split_range.inserted_edges for split_range in split_ranges]) + moments)
 
 
 def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
@@ -359,7 +359,7 @@ def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
         columns = np.searchsorted(new_edges, [x - rounding, x + rounding]) - 1
         # A point beyond the outermost edge by rounding belongs to the outermost column.
         width = float(np.diff(new_edges)[np.clip(columns, 0, new_edges.size - 2)].min())
-        # A column across a step of the load would move its force.
+        # A column across a step of the load would shift the load.
         step_distance = float(np.abs(fine.step_edges - x).min(initial=np.inf)) / 2
         step = min(CENTRED_WIDTH * width, max(step_distance, MIN_CENTRED_WIDTH * width))
         central_edges = x + step * np.array([-1.5, -0.5, 0.5, 1.5])

@@ -47,7 +47,7 @@ class _Buffers:
 
         self.real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
         self.lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
-        # A measured plan, and its last bits, differ from run to run.
+        # A measured plan differs from run to run, and with it the last bits of the result.
         options = {"threads": 1, "flags": ("FFTW_ESTIMATE",)}
         # The padding rows stay zero.
         rows = slice(0, cells_x)
@@ -166,15 +166,15 @@ def centred_field(
     cells_x, cells_y = load.shape
     reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
     if not mirrored:
-        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x - int(rows.min())), real=True)
+        half_x = fft.next_fast_len(max(int(rows.max()) + 1, cells_x - int(rows.min())), real=True)
     elif np.isinf(length):
-        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x) + cells_x, real=True)
+        half_x = fft.next_fast_len(max(int(rows.max()) + 1, cells_x) + cells_x, real=True)
     else:
-        half = cells_x
+        half_x = cells_x
     # At half a period an odd kernel is undefined: both signs coincide.
-    shape = (half, fft.next_fast_len(reach_y + 1, real=True))
+    shape = (half_x, fft.next_fast_len(reach_y + 1, real=True))
     lateral = fft.rfft(load, 2 * shape[1], axis=1)
-    load_transform = fft.dct(lateral, type=2, n=half, axis=0) if mirrored else fft.fft(lateral, 2 * half, axis=0)
+    load_transform = fft.dct(lateral, type=2, n=half_x, axis=0) if mirrored else fft.fft(lateral, 2 * half_x, axis=0)
     is_odd_x, is_odd_y = np.array(influence.sign_along_x) < 0, np.array(influence.sign_along_y) < 0
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):

@@ -126,11 +126,11 @@ def half_space_influence(
     for depth in points.z.tolist():
         corner = influence.corner_at(depth)
         edge_rows = corner(distances, points.y + half_width) - corner(distances, points.y - half_width)
-        cells = edge_rows[:, :, :-1] - edge_rows[:, :, 1:]
-        field = cells[:, :, first_cell : first_cell + columns].copy()
-        for start in range(0, cells.shape[2], columns):
+        cell_fields = edge_rows[:, :, :-1] - edge_rows[:, :, 1:]
+        field = cell_fields[:, :, first_cell : first_cell + columns].copy()
+        for start in range(0, cell_fields.shape[2], columns):
             if start != first_cell:
-                field += image_sign * cells[:, :, start : start + columns][:, :, ::-1]
+                field += image_sign * cell_fields[:, :, start : start + columns][:, :, ::-1]
         if np.isfinite(extent).all():
             kernel = far_images.influence(corner, points.y, grid.dy, np.array(influence.image_level))
             mean_weights = far_images.means(grid.x_edges - extent[0]) * grid.widths

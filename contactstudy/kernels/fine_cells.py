@@ -2,8 +2,8 @@
 
 Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
 matters, and on the top a step of traction makes the stresses infinite. Near the top the load has the shape of a given
-pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and
-depths of the change do not depend on the load, so the field is linear in the load.
+pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. The shape, the
+cells and the depth of the change to whole cells do not depend on the load: the field is linear in the load.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ moments of the fine cells are exact to 5e-6 of the pressure."""
 PARTS_X = 3  # fine cells per cell along x. Accuracy.
 PARTS_Y = 5  # fine cells per cell along y. Accuracy: 3 leave 6e-4 of the pressure on an end at a depth of 0.2 cells.
 NEIGHBOURS = 3  # whole cells on either side that carry the moments of a fine cell, up to the order 6. Accuracy.
-MIN_RESOLVED_WIDTH = 0.3  # least width of a resolved column, over its distance. Accuracy.
+MIN_RESOLVED_WIDTH = 0.3  # least width of a resolved column, over its distance from the position. Accuracy.
 FLATNESS_TOLERANCE = 3e-3  # neglected deviation of a shape from its mean in the cell, over the largest value. Accuracy.
 SPARE_CELLS = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
 
@@ -163,8 +163,8 @@ class FineCells:
         margin = NEIGHBOURS * self.grid.dy
         y_range = (float(self.y_edges[0]) - margin, float(self.y_edges[-1]) + margin)
         loads = coarsen(fine_loads.T, PARTS_Y).T
-        cells = Grid.between(grid.x_edges, y_range, loads.shape[1])
-        return (loads, cells) if fine_x else self.coarsen_x(loads, cells)
+        coarse_grid = Grid.between(grid.x_edges, y_range, loads.shape[1])
+        return (loads, coarse_grid) if fine_x else self.coarsen_x(loads, coarse_grid)
 
     def coarsen_x(self, loads: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
         """Load on uniform cells, whole cells along x with the moments of the fine cells, and the grid."""
@@ -172,7 +172,7 @@ class FineCells:
         padded = np.pad(loads, ((margin, margin), (0, 0)), mode="symmetric")
         for has_image, loads_beyond in zip(has_end, (padded[:margin], padded[-margin:]), strict=True):
             loads_beyond *= self.image_sign if has_image else 0
-        # The loads that carry the moments also lie on cells beyond the load, or in the image at an end.
+        # Whole cells beyond the load, or in its image at an end, also carry moments.
         loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
         step, (cells_before, cells_behind) = self.grid.dx, (0 if has_image else NEIGHBOURS for has_image in has_end)
         loads = loads[NEIGHBOURS - cells_before : loads.shape[0] - NEIGHBOURS + cells_behind]
@@ -197,10 +197,10 @@ class FineCells:
         fine_loads, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
         # The cells follow from the grid, not from the loaded cells, so that fields of several loads add up.
         rows_beyond = self.grid.cells_y + SPARE_CELLS - (self.first + self.count)
-        cells = np.pad(fine_loads, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * rows_beyond)))
+        padded = np.pad(fine_loads, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * rows_beyond)))
         low, high = self.grid.y_range
         margin = SPARE_CELLS * self.grid.dy
-        return cells, Grid.between(edges, (low - margin, high + margin), cells.shape[1])
+        return padded, Grid.between(edges, (low - margin, high + margin), padded.shape[1])
 
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
         """Load on uniform cells split along x and y, and the grid."""
@@ -217,8 +217,8 @@ class FineCells:
         y_edges = self.y_edges[0] + shift + step * np.arange(PARTS_Y * self.count + 1.0)
         if shift:  # one more cell covers the rest of the first or last cell
             y_edges = np.append(y_edges, y_edges[-1] + step) if shift < 0 else np.append(y_edges[0] - step, y_edges)
-        cells = self.shape_along_y(columns, shape).equivalent_means(y_edges)
-        return cells, Grid.between(edges, (float(y_edges[0]), float(y_edges[-1])), cells.shape[1])
+        cell_loads = self.shape_along_y(columns, shape).equivalent_means(y_edges)
+        return cell_loads, Grid.between(edges, (float(y_edges[0]), float(y_edges[-1])), cell_loads.shape[1])
 
     def _remove_images(self, columns: FloatArray) -> FloatArray:
         """Columns without images."""
@@ -243,16 +243,16 @@ def share_fine_cells(
 
 def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:
     """Return loads (cell, ...) with the moments of `fine_loads` (fine cell, ...), `NEIGHBOURS` cells more per side."""
-    cells = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
+    offsets = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
     midpoints = (np.arange(fine_per_cell) - 0.5 * (fine_per_cell - 1)) / fine_per_cell
-    orders = np.arange(cells.size)[:, None]
+    orders = np.arange(offsets.size)[:, None]
 
     def moments(centres: FloatArray, width: float) -> FloatArray:
         return np.asarray(
             ((centres + 0.5 * width) ** (orders + 1) - (centres - 0.5 * width) ** (orders + 1)) / (width * (orders + 1))
         )
 
-    weights = np.linalg.solve(moments(cells, 1.0), moments(midpoints, 1 / fine_per_cell)) / fine_per_cell  # eq. (32c)
+    weights = np.linalg.solve(moments(offsets, 1.0), moments(midpoints, 1 / fine_per_cell)) / fine_per_cell  # eq. (32c)
     loads_by_cell = fine_loads.reshape(fine_loads.shape[0] // fine_per_cell, fine_per_cell, *fine_loads.shape[1:])
     loads = np.zeros((loads_by_cell.shape[0] + 2 * NEIGHBOURS, *fine_loads.shape[1:]))
     for index, cell_weights in enumerate(weights):
@@ -288,13 +288,13 @@ def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tup
     narrow_before, narrow_behind = np.flatnonzero(~is_wide[:nearest]), np.flatnonzero(~is_wide[nearest:])
     lowest = int(narrow_before[-1]) + 1 if narrow_before.size else 0
     highest = nearest + int(narrow_behind[0]) if narrow_behind.size else widths.size
-    resolved = np.flatnonzero(widths[lowest:highest] > min_width)
-    return (lowest + int(resolved[0]), lowest + int(resolved[-1]) + 1) if resolved.size else (nearest, nearest)
+    columns = np.flatnonzero(widths[lowest:highest] > min_width)
+    return (lowest + int(columns[0]), lowest + int(columns[-1]) + 1) if columns.size else (nearest, nearest)
 
 
 def _split_edges(edges: FloatArray, split_columns: BoolArray) -> FloatArray:
     """Edges of columns after the marked columns are split."""
-    part_edges = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
-    is_edge = np.ones(part_edges.shape, bool)
+    split_edges = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
+    is_edge = np.ones(split_edges.shape, bool)
     is_edge[:, 1:] = split_columns[:, None]
-    return np.append(part_edges[is_edge], edges[-1])
+    return np.append(split_edges[is_edge], edges[-1])

@@ -1,8 +1,8 @@
 """Influence of one cell on a uniform grid, without or with all mirror images in two ends.
 
-Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. Their fields vary
-smoothly over one period: the nearest few images are evaluated at Chebyshev points and interpolated, and a uniformly
-spread load replaces the distant ones (midpoint rule with its first correction).
+Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. The fields of the images vary
+smoothly over one period: the field of the nearest few images is interpolated from Chebyshev points, and a uniformly
+spread load replaces the distant images (midpoint rule with its first correction).
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def image_kernel(
 
     for index in range(NEAR_IMAGES):
         add_spread_load(nearest + period * index - 0.5 * dx, nearest + period * index + 0.5 * dx, 1.0)
-    # Two Gauss points of the cell represent the shifts of its spread load.
+    # Two Gauss points represent the width of the cell in its spread load.
     for offset in (-dx / np.sqrt(12), dx / np.sqrt(12)):
         add_spread_load(spread_start + offset, spread_stop, 0.5 * dx / period)
     step = 0.1 * length

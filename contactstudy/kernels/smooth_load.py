@@ -19,8 +19,7 @@ MAX_FACE_RATIO = 1.4
 """Largest value on a face over the smaller neighbour: above 1.5 a cell cannot keep its force. Accuracy."""
 
 MIN_EQUAL_RATIO = 0.999
-"""Least ratio of equal neighbouring loads. Accuracy: on few cells the middle two differ by rounding, which must not
-determine the end of a load."""
+"""Least ratio of equal neighbouring loads; a load must not end between cells that differ by rounding. Accuracy."""
 
 MIN_NEIGHBOUR_RATIO = 0.5
 """Least ratio of the shape's means in neighbouring cells with a continuous ratio between them. Accuracy."""
@@ -49,7 +48,7 @@ class SmoothLoad:
 
     @classmethod
     def of(cls, cell_loads: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> SmoothLoad:
-        """Smooth functions through `cell_loads` (row, cell); with `extends_beyond` up to half a cell beyond."""
+        """Smooth functions through `cell_loads` (row, cell); with `extends_beyond` half a cell beyond loaded cells."""
         loads, widths = np.abs(cell_loads), np.diff(edges)
         sign = np.sign(cell_loads)
         row_count = loads.shape[0]
@@ -83,8 +82,8 @@ class SmoothLoad:
 
     def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
         """Return `cell_loads` (row, cell) of this shape: the shape times a ratio, linear between centres and faces."""
-        # The ratio on a face is a mean of the ratios at both cells' centres: no ratio is larger than all of these, and
-        # tractions keep their bound. The cells keep the sum of their forces; coupled cells have one ratio.
+        # The ratio on a face is a mean of the ratios at both cells' centres, and does not exceed both: tractions keep
+        # their bound. The cells keep the sum of their forces; coupled cells have one ratio.
         widths, count = np.diff(self.edges), cell_loads.shape[1]
         (force,) = self.moments_up_to(np.arange(count), self.edges[1:], 0)
         is_empty = force == 0

@@ -235,17 +235,17 @@ class _PairSums:
     is_missing: BoolArray  # (cell, cell): pairs below the diagonal and on it without an influence
 
     @classmethod
-    def of(cls, edges: FloatArray, y: FloatArray, stored: _PairSums | None) -> _PairSums:
-        """Zero influence between columns with these edges, except the stored influence between columns of `stored`."""
+    def of(cls, edges: FloatArray, y: FloatArray, stored_sums: _PairSums | None) -> _PairSums:
+        """Zero influence between columns with these edges, except between columns in `stored_sums`."""
         count = edges.size - 1
         total = np.zeros((count, count, y.size))
         is_missing = np.ones((count, count), bool)
-        if stored is not None:
-            index = np.minimum(np.searchsorted(stored.edges[:-1], edges[:-1]), stored.edges.size - 2)
+        if stored_sums is not None:
+            index = np.minimum(np.searchsorted(stored_sums.edges[:-1], edges[:-1]), stored_sums.edges.size - 2)
             common_columns = np.flatnonzero(
-                (stored.edges[index] == edges[:-1]) & (stored.edges[index + 1] == edges[1:])
+                (stored_sums.edges[index] == edges[:-1]) & (stored_sums.edges[index + 1] == edges[1:])
             )
-            total[np.ix_(common_columns, common_columns)] = stored.total[
+            total[np.ix_(common_columns, common_columns)] = stored_sums.total[
                 np.ix_(index[common_columns], index[common_columns])
             ]
             is_missing[np.ix_(common_columns, common_columns)] = False

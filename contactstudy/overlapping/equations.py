@@ -204,7 +204,7 @@ class SingleMirrorModes(AxialModes):
         return np.asarray(1 / (-np.expm1(-scaled_length) - scaled_length * decay))
 
     def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
-        """Load on a face per normal stress removed: the opposite half-space removes the rest."""
+        """Load on a face per normal stress removed: the load on the opposite half-space contributes."""
         return self.face_factor(kappa)
 
     def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -261,7 +261,7 @@ class AuxiliaryLoads(NamedTuple):
     modes: AxialModes
     lateral: FloatArray  # wavenumbers ``k_y`` (node), 1/m
     poisson: float
-    equivalent: list[ComplexArray]
+    equivalent_load: list[ComplexArray]
     """Weighted spectra (node, wavenumber, column), before `cosine`, of the load added on H's top."""
     depth: ComplexArray
     """Depth wavenumbers of one node after another on their rays, where the face loads are an analytic function."""
@@ -274,8 +274,8 @@ class AuxiliaryLoads(NamedTuple):
         """Join the loads of all nodes."""
         return node_loads[0]._replace(
             lateral=np.concatenate([loads.lateral for loads in node_loads]),
-            equivalent=[
-                np.concatenate(nodes) for nodes in zip(*(loads.equivalent for loads in node_loads), strict=True)
+            equivalent_load=[
+                np.concatenate(nodes) for nodes in zip(*(loads.equivalent_load for loads in node_loads), strict=True)
             ],
             depth=np.concatenate([loads.depth for loads in node_loads]),
             counts=[loads.depth.size for loads in node_loads],
@@ -362,21 +362,21 @@ class EquationSet:
         top_modes, top_conjugates = self.ray_to_faces(Load.NORMAL, depth)
         equivalent_loads, face_loads = [], []
         for load in loads:
-            equivalent = self.spectrum_on_top(self.solve(self.source(load, spectrum)))
-            top_spectrum = self.modes.on_end[:, None] * equivalent
+            equivalent_load = self.spectrum_on_top(self.solve(self.source(load, spectrum)))
+            top_spectrum = self.modes.on_end[:, None] * equivalent_load
             if load is Load.NORMAL:
                 top_spectrum += spectrum
             face_load = top_modes @ top_spectrum + top_conjugates @ top_spectrum.conj()  # eq. (26)
             if load is not Load.NORMAL:
                 mode_matrix, conjugate_matrix = self.ray_to_faces(load, depth)
                 face_load += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
-            equivalent_loads.append(equivalent[None])
+            equivalent_loads.append(equivalent_load[None])
             face_loads.append(weights[:, None] * face_load)
         return AuxiliaryLoads(
             modes=self.modes,
             lateral=np.array([self.lateral]),
             poisson=self.poisson,
-            equivalent=equivalent_loads,
+            equivalent_load=equivalent_loads,
             depth=depth,
             counts=[depth.size],
             face_load=face_loads,

@@ -190,9 +190,9 @@ def _panel_amplitudes(
     distances = [points.distance for points in point_sets]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
-    grows = np.isfinite(reference) and problem.sign_x in harmonics.growing_signs
+    field_grows = np.isfinite(reference) and problem.sign_x in harmonics.growing_signs
     y = np.concatenate([points.y for points in point_sets])
-    for panel in problem.panels(y, shortest, reference if grows else None):
+    for panel in problem.panels(y, shortest, reference if field_grows else None):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
         solved_panel = solve(problem, panel, shortest)
@@ -277,12 +277,12 @@ def _field_of_equivalent_load(
     decay = np.exp(-k[:, None] * z[:, None])
     z_times_decay = decay * z[:, None]
     count = sum(len(terms) for _, terms in waves)
-    nodes, columns = loads.lateral.size, loads.equivalent[0].shape[2]
-    fields = np.empty((len(loads.equivalent), count, waves[0][0].shape[1], z.size, nodes, columns))
+    nodes, columns = loads.lateral.size, loads.equivalent_load[0].shape[2]
+    fields = np.empty((len(loads.equivalent_load), count, waves[0][0].shape[1], z.size, nodes, columns))
     for wave, terms in waves:
         along_z = np.stack([a[:, None] * decay + b[:, None] * z_times_decay for a, b in terms.values()], axis=1)
         right_factor = along_z.reshape(nodes, -1, k.shape[1]).view(np.float64).swapaxes(1, 2)
-        for load_field, spectrum in zip(fields, loads.equivalent, strict=True):
+        for load_field, spectrum in zip(fields, loads.equivalent_load, strict=True):
             along_x = np.multiply(spectrum.swapaxes(1, 2)[:, :, None], wave.T, order="C").conj()
             # Real and imaginary parts alternate in memory: the product with the conjugate is the real part.
             product = along_x.reshape(nodes, -1, k.shape[1]).view(np.float64) @ right_factor
@@ -321,9 +321,8 @@ def _field_of_face_load(loads: AuxiliaryLoads, along_x: ComplexArray, along_z: C
 
 def _stress_of_face_load(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
     """Stresses of V under the face loads on its two ends: (load, 6, x, z, node, column)."""
-    # The slab's harmonics are two half-space harmonics that start from either end; with ``X = kappa`` times the
-    # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
-    # below.
+    # A slab's harmonic is the sum of a half-space harmonic from each end: its amplitude and ``exp(-X)`` times the terms
+    # below, where ``X`` is kappa times the distance from that end and ``Phi = 1 - 2 nu - tau - X``.
     nu, modes, depth = loads.poisson, loads.modes, loads.depth
     lateral = np.repeat(loads.lateral, loads.counts)
     kappa, tau, along_z = _face_waves(loads, lateral, z)

@@ -25,14 +25,14 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import AxialModes, axial_modes
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 
-NEGLIGIBLE_LOAD = 1e-11  # neglected part of a load, to which fields of loads add up: narrow columns. Rounding.
+NEGLIGIBLE_LOAD = 1e-11  # neglected share of a load; fields of several loads add up to this accuracy. Rounding.
 
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0, eq. (30); 3 if a force along x bends the body, eq. (30a). Physics."""
 
 POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
-"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is a sum of poles and as many
-powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
+"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is a sum of poles and powers,
+and the number of the powers. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
 the more it amplifies the quadrature errors of a much lower wavenumber."""
 
 PHASE_PER_NODE = 1.8  # phase that one Gauss node follows, radians. Accuracy.
@@ -100,8 +100,8 @@ class LateralColumns:
 
     def synthesis(self, load: Load, parity: int, waves: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Matrices (node column, y) from amplitudes of one parity to their sum at the positions of the `waves`."""
-        # They serve components even and odd under a load even in y. Kernels of a load that a reflection along y
-        # reverses carry a factor i, which turns a cosine into a sine.
+        # The matrices are for components even and odd under a load even in y. Kernels of a load that a reflection along
+        # y reverses carry a factor i, which turns a cosine into a sine.
         (even_part, odd_part), (cosine, sine) = self.along_y[parity], waves
         even_filters, odd_filters = even_part @ cosine + odd_part @ sine, odd_part @ cosine - even_part @ sine
         return (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
@@ -152,8 +152,8 @@ def lateral_panels(
 def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid) -> LateralColumns | None:
     """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if the panel needs no column."""
     # With an interpolation the load is represented by few functions of x at few nodes.
-    waves, fine = panel.load_waves(grid), panel.fine_nodes.size
-    parity_spectra = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
+    waves, fine_count = panel.load_waves(grid), panel.fine_nodes.size
+    parity_spectra = {parity: [cell_loads @ wave for wave in waves] for parity, cell_loads in parity_loads.items()}
     min_amplitude = NEGLIGIBLE_LOAD * max(
         (np.abs(amplitude).max() for amplitudes in parity_spectra.values() for amplitude in amplitudes), default=0.0
     )
@@ -164,18 +164,18 @@ def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray],
             continue
         functions = np.stack([spectra[part] for part in parts], axis=-1)  # (cell, fine, part)
         if panel.interpolation is None:
-            along_nodes = np.eye(fine)[None, :, None, :] * np.eye(len(parts))[:, None, :, None]
+            along_nodes = np.eye(fine_count)[None, :, None, :] * np.eye(len(parts))[:, None, :, None]
         else:
             matrix = functions.reshape(functions.shape[0], -1)
             along_cells, singular_values, right_vectors = np.linalg.svd(matrix, full_matrices=False)
             rank = int((singular_values > NEGLIGIBLE_LOAD * singular_values[0]).sum())
             functions = along_cells[:, None, :rank]
-            factors = (singular_values[:rank, None] * right_vectors[:rank]).reshape(rank, fine, -1)
+            factors = (singular_values[:rank, None] * right_vectors[:rank]).reshape(rank, fine_count, -1)
             along_nodes = panel.interpolation.T[None, :, None, :] * factors.transpose(2, 0, 1)[:, None]
         along_x.append(functions)
         parities.append(np.full(functions.shape[2], parity))
-        along_y[parity] = np.zeros((2, along_nodes[0, ..., 0].size, fine))
-        along_y[parity][parts] = along_nodes.reshape(len(parts), -1, fine)
+        along_y[parity] = np.zeros((2, along_nodes[0, ..., 0].size, fine_count))
+        along_y[parity][parts] = along_nodes.reshape(len(parts), -1, fine_count)
     if not along_x:
         return None
     return LateralColumns(
@@ -185,8 +185,8 @@ def lateral_columns(panel: LateralPanel, parity_loads: Mapping[int, FloatArray],
 
 def cosine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
     """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `panel_end`: (3 + terms, y)."""
-    # Integrals of poles are relative to ``|y| = reference = r``: with the integrals beyond `panel_end` they are rigid
-    # motions, k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
+    # Integrals of poles are finite parts, zero at ``|y| = reference = r``. Over all k, past `panel_end` too, they are,
+    # k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
     from scipy.special import sici
 
     distance = np.maximum(np.abs(y), 1e-30 / panel_end)

@@ -50,7 +50,7 @@ Accuracy: below it lies 1e-7 of that scale."""
 class Resolution:
     """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 2e-5 of a load.
 
-    Reaches are over the smallest distance of a position from a loaded corner.
+    Reaches refer to the smallest distance of a position from a loaded corner.
 
     Parameters
     ----------
@@ -140,9 +140,9 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     """Integrals over each cell of the Lagrange polynomials on each panel's positions: array (position, cell)."""
     order = positions.size // (edges.size - 1)
     moments = np.zeros((positions.size, cell_edges.size - 1))
-    breaks = np.union1d(edges, np.clip(cell_edges, edges[0], edges[-1]))
-    points, weights = panel_nodes(breaks, order)
-    midpoints = np.repeat(0.5 * (breaks[1:] + breaks[:-1]), order)
+    break_points = np.union1d(edges, np.clip(cell_edges, edges[0], edges[-1]))
+    points, weights = panel_nodes(break_points, order)
+    midpoints = np.repeat(0.5 * (break_points[1:] + break_points[:-1]), order)
     panel = np.clip(np.searchsorted(edges, midpoints) - 1, 0, edges.size - 2)
     cell = np.searchsorted(cell_edges, midpoints) - 1
     for index in range(edges.size - 1):

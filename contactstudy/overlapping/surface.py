@@ -30,7 +30,7 @@ from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded
 EXTRA_NODES = 2
 """Wavenumbers along y per panel in addition to those of a field: an operator serves all loads. Accuracy."""
 
-RAY_FACTOR = 1.25  # angle of the axial ray and step along it over those of a field with its depth ray. Speed.
+RAY_FACTOR = 1.25  # angle and step of the axial ray over those of a field, whose depth ray limits them. Speed.
 
 CELLS_PER_FINEST = 8  # cells along y over the finest resolved distance from an end with narrow cells along x. Accuracy.
 
@@ -223,7 +223,7 @@ def _sample_panel(
     waves = [PositionWaves(mode, positions, request.responses) for mode in modes]
     for wavenumber in panel.nodes.tolist():
         kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
-        # Ends do not interact: each parity has half of a quarter space's kernel.
+        # Distant ends do not interact: each parity has half of a quarter space's kernel.
         yield 0.5 * np.repeat(kernel, 2, axis=0) if len(request.parities) > len(modes) else kernel
 
 

@@ -1,4 +1,4 @@
-"""Interface of profiles, and profiles of other profiles: sums, two halves, a profile over the effective length."""
+"""Interface of profiles, and composite profiles: sums, two halves, a profile over the effective length."""
 
 from __future__ import annotations
 
@@ -82,8 +82,7 @@ def find_slope_jumps(drop: Callable[[FloatArray], FloatArray], length: float) ->
 class Shape:
     """Base of the profiles of this package: defines ``+``, the radius across the roller, corners and samples.
 
-    A user's class needs only ``drop(x, length)``. A class derived from `Shape` can be a summand and override these
-    methods.
+    A user's class needs only ``drop(x, length)``. A subclass of `Shape` can be a summand and override these methods.
     """
 
     def __post_init__(self) -> None:
@@ -103,7 +102,7 @@ class Shape:
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
     def nodes(self, length: float) -> SlopeJumps:
-        """Points between which the profile is smooth, with jumps that measured points do not resolve, or 0."""
+        """Points between which the profile is smooth, with the slope jumps that measured points do not resolve."""
         return SlopeJumps(np.zeros(0), np.zeros(0))
 
     def second_interpolation(self) -> Any:
@@ -222,7 +221,7 @@ class Sum(Shape):
         return SlopeJumps.join(*(as_shape(term).nodes(length) for term in self.terms))
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
-        """Radius across the roller (m) after every summand in turn."""
+        """Radius across the roller (m), which each summand in turn may change."""
         for term in self.terms:
             radius = local_radius(term, x, length, radius)
         return np.asarray(radius)

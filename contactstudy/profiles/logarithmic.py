@@ -82,8 +82,7 @@ class Logarithmic(Shape):
 class Lundberg(Logarithmic):
     """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
 
-    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller. The drop is
-    infinite at the very ends.
+    With ``delta = 1`` the pressure of the design load on a half-space is uniform. The drop is infinite at the ends.
 
     Parameters
     ----------
@@ -210,9 +209,9 @@ class FujiwaraKawase(Logarithmic):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        half = length / 2
+        half_length = length / 2
         scale = self.k1 * self.amplitude
-        t = np.clip((np.abs(x) - half) / (self.k2 * half) + 1, 0.0, 1.0)
+        t = np.clip((np.abs(x) - half_length) / (self.k2 * half_length) + 1, 0.0, 1.0)
         end = np.exp(-self.edge_drop / scale)
         # two forms of 1 - (1 - end) t**2: exact near 1, and near 0
         with np.errstate(divide="ignore"):

@@ -20,7 +20,7 @@ from contactstudy.profiles.base import MIN_JUMP, POSITIVE_LENGTH, Shape, SlopeJu
 from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21). Physics.
-WEIGHT_REACH = 2.2  # Half the weight's support over its width; beyond it is below 3e-7 of its peak. Accuracy.
+WEIGHT_REACH = 2.2  # Half the weight's support, over ``ALPHA`` times the cut-off; below 3e-7 beyond. Accuracy.
 
 
 def filter_gaussian(x: FloatArray, values: FloatArray, cutoff: float) -> FloatArray:
@@ -44,10 +44,10 @@ def _sum_even_points(step: float, values: FloatArray) -> tuple[FloatArray, ...]:
     s = step * np.arange(reach, -reach - 1, -1)  # a convolution reverses the order
     weight = step * np.exp(-np.pi * s**2)
     point_weights = np.ones(values.size)
-    point_weights[[0, -1]] = 0.5  # the end points have half a step
-    pairs = [(weight * s**power, point_weights) for power in range(3)]
-    pairs += [(weight * s**power, point_weights * values) for power in range(2)]
-    return tuple(oaconvolve(samples, kernel, mode="full")[reach : reach + values.size] for kernel, samples in pairs)
+    point_weights[[0, -1]] = 0.5  # end points represent half a step
+    kernels = [(weight * s**power, point_weights) for power in range(3)]
+    kernels += [(weight * s**power, point_weights * values) for power in range(2)]
+    return tuple(oaconvolve(samples, kernel, mode="full")[reach : reach + values.size] for kernel, samples in kernels)
 
 
 def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, ...]:
@@ -95,7 +95,7 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
 
 
 VALUE_NAMES = ("drop", "height")  # names of the values in a file: missing or excess material
-# Unresolved corner: least change of the slope over the typical change, and over that so many steps away. Accuracy.
+# Unresolved corner: least change of the slope over typical changes; distance of the latter in steps. Accuracy.
 CORNER_RATIO, CORNER_STEPS = 4.0, 2
 MIN_POINTS = 5  # Minimum number of measured points. Limit.
 # Minimum number of steps between points in the cut-off, to resolve the filter's weight. Accuracy.
@@ -233,8 +233,8 @@ class Measured(Shape):
             check_positions("x", x, MIN_POINTS)
             check_values(name, drop, ("x", x))
         if remove_tilt:
-            x_from_middle = x - 0.5 * (x[0] + x[-1])
-            drop = drop - np.polynomial.polynomial.polyfit(x_from_middle, drop, 1)[1] * x_from_middle
+            axial_distance = x - 0.5 * (x[0] + x[-1])
+            drop = drop - np.polynomial.polynomial.polyfit(axial_distance, drop, 1)[1] * axial_distance
         if remove_offset:
             drop = drop - drop.min()
         return cls(x.tolist(), drop.tolist(), largest_spike, cutoff)

@@ -137,7 +137,7 @@ def truncate(text: str) -> str:
 
 
 class NumberParser:
-    """Parser of numbers with one decimal mark: a comma unless it separates columns or thousands, or one has a point."""
+    """Parser of numbers with one decimal mark: a comma, unless it separates columns or thousands or points occur."""
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","
@@ -145,11 +145,11 @@ class NumberParser:
         self._marked_fields: dict[str, tuple[str, str]] = {}
         self._is_decimal_comma = False
 
-    def parse(self, line: int, name: str, field: str) -> float:
+    def parse(self, line_number: int, name: str, field: str) -> float:
         """Return a field of a column as a number; NaN for an empty field."""
         if not field.strip():
             return np.nan
-        field_name = f"line {line}, {name}"
+        field_name = f"line {line_number}, {name}"
         numeral = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
         # Python's float also accepts underscores and the digits of all scripts.
         if not NUMERAL.fullmatch(numeral):
@@ -297,8 +297,8 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
     if not bad_indices.size:
         return
     places = []
-    for entry in bad_indices[:5]:
-        pairs = zip(positions, entry, strict=True)
+    for indices in bad_indices[:5]:
+        pairs = zip(positions, indices, strict=True)
         places.append(", ".join(f"{axis} = {points[index]:g} m" for (axis, points), index in pairs))
     hint = f"{len(bad_indices)} values are not: fill the gaps first, for example with the instrument's software"
     raise InvalidInputError(name, f"missing or not finite at {'; '.join(places)}", "given everywhere", hint)
@@ -340,8 +340,8 @@ def _arrange_points(columns: dict[str, FloatArray]) -> Heights:
     for name in ("x", "y"):
         checks.coordinates(name, columns[name])
     points = pd.DataFrame(columns)
-    if (repeated := points.duplicated(["x", "y"])).any():
-        x, y = points.loc[repeated, ["x", "y"]].iloc[0]
+    if (is_repeated := points.duplicated(["x", "y"])).any():
+        x, y = points.loc[is_repeated, ["x", "y"]].iloc[0]
         count = ((points["x"] == x) & (points["y"] == y)).sum()
         raise InvalidInputError("height", f"{count} values at x = {x:g} m, y = {y:g} m", "one value at every point")
     heights = points.pivot(index="x", columns="y", values="height")

@@ -289,7 +289,7 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
             if x == 1e-12 and position:  # equal to 0 within rounding at this position
                 continue
             assert (variant.start, variant.stop) == (baseline.start, baseline.stop)
-            assert variant.inserted / unit - position == pytest.approx(baseline.inserted, abs=1e-9)
+            assert variant.inserted_edges / unit - position == pytest.approx(baseline.inserted_edges, abs=1e-9)
             factor = PRESSURE if unit < 1 else 1.0
             assert variant.moment_loads(cells) / factor == pytest.approx(baseline.moment_loads(plain_cells), abs=1e-9)
             for reach in (0.0, 0.3137, 1.0731, 9.0):
@@ -303,20 +303,20 @@ def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
     cells = make_fine_cells(image_sign=image_sign)
     split_range = split_around(x, cells)
     forces = add_images(cells.far_load, image_sign, cells.extent) * np.diff(cells.edges)[:, None]
-    inserted = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
-    inserted_force = (inserted * np.diff(split_range.inserted)[:, None]).sum(axis=0)
+    inserted = cells.column_means([split_range.inserted_edges]) + split_range.moment_loads(cells)
+    inserted_force = (inserted * np.diff(split_range.inserted_edges)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)
     assert inserted_force + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
-    assert split_range.inserted[0] == cells.edges[split_range.start]
-    assert split_range.inserted[-1] == cells.edges[split_range.stop]
-    assert (np.diff(split_range.inserted) > 0).all()
+    assert split_range.inserted_edges[0] == cells.edges[split_range.start]
+    assert split_range.inserted_edges[-1] == cells.edges[split_range.stop]
+    assert (np.diff(split_range.inserted_edges) > 0).all()
 
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
 def test_narrow_columns_surround_point(x: float) -> None:
     """The columns are a quarter as wide as the column of the point, on an edge as the narrower neighbour."""
     cells = make_fine_cells()
-    edges = split_around(x, cells).inserted
+    edges = split_around(x, cells).inserted_edges
     column = int(np.searchsorted(edges, x)) - 1
     assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
     widths = np.diff(edges)
@@ -340,11 +340,11 @@ def test_inserted_columns_stop_at_load_step() -> None:
     (step,) = cells.step_edges[np.abs(cells.step_edges - 0.6) < 1e-9]
     for distance in (0.001, 0.004, 0.01):
         for x in (step - distance, step + distance):
-            edges = split_around(float(x), cells).inserted
+            edges = split_around(float(x), cells).inserted_edges
             column = int(np.searchsorted(edges, x)) - 1
             assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
             assert not edges[column - 1] < step - 1e-12 < step + 1e-12 < edges[column + 2]
-    edges = split_around(float(step), cells).inserted  # on the step itself by the least width
+    edges = split_around(float(step), cells).inserted_edges  # on the step itself by the least width
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
@@ -354,9 +354,9 @@ def test_rounding_before_edge_equals_edge(narrow: float) -> None:
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
     cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
-    edges_at_edge = split_around(2.0, cells, narrow).inserted
+    edges_at_edge = split_around(2.0, cells, narrow).inserted_edges
     for towards in (-np.inf, np.inf):
-        adjacent = split_around(float(np.nextafter(2.0, towards)), cells, narrow).inserted
+        adjacent = split_around(float(np.nextafter(2.0, towards)), cells, narrow).inserted_edges
         assert np.diff(adjacent).min() == pytest.approx(np.diff(edges_at_edge).min(), rel=0.6)
 
 
@@ -364,8 +364,8 @@ def test_point_on_end_adds_no_column() -> None:
     """A point on an end has no column: the mirrored load continues smoothly or changes its sign."""
     for position in (0.0, 8.0):
         for end in (position, position + 3.0):
-            assert np.abs(split_around(end, make_fine_cells(position)).inserted - end).min() < 1e-12
-        adjacent = split_around(position + 1e-3, make_fine_cells(position)).inserted
+            assert np.abs(split_around(end, make_fine_cells(position)).inserted_edges - end).min() < 1e-12
+        adjacent = split_around(position + 1e-3, make_fine_cells(position)).inserted_edges
         column = int(np.searchsorted(adjacent, position + 1e-3)) - 1
         assert 0.5 * (adjacent[column] + adjacent[column + 1]) == pytest.approx(position + 1e-3)
 
@@ -476,11 +476,11 @@ def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
     """Outside the first and the last edge of a load without images no narrow columns exist."""
     cells = make_fine_cells(ends=0)
     split_range = split_around(x, cells)
-    assert (split_range.inserted[0], split_range.inserted[-1]) == (
+    assert (split_range.inserted_edges[0], split_range.inserted_edges[-1]) == (
         cells.edges[split_range.start],
         cells.edges[split_range.stop],
     )
-    assert (np.diff(split_range.inserted) > 0).all()
+    assert (np.diff(split_range.inserted_edges) > 0).all()
 
 
 @pytest.mark.parametrize("uniform", [True, False])

@@ -50,7 +50,7 @@ def count_evaluated_points(point_sets: list[Points]) -> int:
 
     def beside(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
         sizes.append(x.size * z.size)
-        return STRESS.of_face_load(loads, x, z)
+        return STRESS.face_load_field(loads, x, z)
 
     problem = EndProblem(
         length=8.0,
@@ -60,7 +60,7 @@ def count_evaluated_points(point_sets: list[Points]) -> int:
         grid=grid,
         resolution=Resolution(),
     )
-    end_fields(problem, replace(STRESS, of_face_load=beside), point_sets)
+    end_fields(problem, replace(STRESS, face_load_field=beside), point_sets)
     return sum(sizes)
 
 

@@ -49,7 +49,7 @@ def loads_of(modes: AxialModes, *, equivalent: ComplexArray, depth: ComplexArray
         modes=modes,
         lateral=np.array([LATERAL]),
         poisson=POISSON,
-        equivalent=[equivalent[None]],
+        equivalent_load=[equivalent[None]],
         depth=depth,
         counts=[depth.size],
         face_load=[face],

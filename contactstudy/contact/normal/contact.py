@@ -23,7 +23,7 @@ from contactstudy.threads import one_blas_thread
 
 CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance of its steps. Accuracy.
 OPEN_TOLERANCES = 10.0  # least open gap over the tolerance times the displacement's variation. Accuracy.
-MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
+MAX_ROUNDS = 20  # largest number of rounds for a prescribed tilt or approach. Speed.
 INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
 SYMMETRY_ROUNDING = 1e-10  # asymmetry of a gap over the largest gap, of a body's middle over the window. Rounding.
 
@@ -92,8 +92,8 @@ class Shape(NamedTuple):
         if counterbody is None:
             return LineMotions(body_motion, body_motion)
         reaction = {
-            load: (1 if load is Load.NORMAL else -1) * counterbody.transfer_load(grid, cells)
-            for load, cells in loads.items()
+            load: (1 if load is Load.NORMAL else -1) * counterbody.transfer_load(grid, cell_loads)
+            for load, cell_loads in loads.items()
         }
         start = counterbody.start
         reaction_motion = line_motion(counterbody.body, counterbody.grid_on_body(grid), reaction, position - start)
@@ -231,8 +231,8 @@ def iterate_contact(
     # adds the motion of the reference lines to the gap.
     grid, prescribed, tolerance = shape.grid, shape.prescribed, settings.tolerance
     bodies = [shape.body] if shape.counterbody is None else [shape.body, shape.counterbody.body]
-    has_line = any(np.isfinite(body.depth) for body in bodies)
-    is_prescribed = (has_line and prescribed.approach is not None, has_line and prescribed.load_position is None)
+    is_near = any(np.isfinite(body.depth) for body in bodies)  # a reference line
+    is_prescribed = (is_near and prescribed.approach is not None, is_near and prescribed.load_position is None)
     low, high = grid.x_range
     weights = np.array([1.0, high - low])
     trial_motion, previous_residual = np.zeros(2), np.zeros(2)

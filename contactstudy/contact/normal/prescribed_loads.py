@@ -101,8 +101,8 @@ def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
     edges[-1] = high
     x_range = np.array(grid.x_range)
     nodes, _ = panel_nodes(x_range, count)
-    columns, cells = (cell_moments(x_range, nodes, edges_x) for edges_x in (edges, grid.x_edges))
-    return Grid.between(edges, grid.y_range, grid.cells_y), np.asarray(np.linalg.solve(columns, cells))
+    column_moments, moments = (cell_moments(x_range, nodes, edges_x) for edges_x in (edges, grid.x_edges))
+    return Grid.between(edges, grid.y_range, grid.cells_y), np.asarray(np.linalg.solve(column_moments, moments))
 
 
 def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], position: float) -> RigidMotion:
@@ -111,9 +111,9 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
         return RigidMotion()
     columns, column_matrix = distant_columns(grid, body.depth)
     displacement: FloatArray = np.zeros(1)
-    for load, cells in loads.items():
+    for load, cell_loads in loads.items():
         x, weights, influence = reference_line(body, columns, load)
-        displacement = displacement + np.tensordot(influence, column_matrix @ cells, axes=2)
+        displacement = displacement + np.tensordot(influence, column_matrix @ cell_loads, axes=2)
     arm = x - np.average(x, weights=weights)
     tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
     position_on_line = np.clip([position], *np.clip(body.extent, *grid.x_range))

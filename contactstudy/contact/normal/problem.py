@@ -308,11 +308,11 @@ class ContactProblem:
     def coarsen(self) -> ContactProblem:
         """Return the contact on cells of twice the size."""
         grid = self.grid.coarsened()
-        cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
-        can_touch = np.isfinite(cells)
+        gaps = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
+        can_touch = np.isfinite(gaps)
         areas = can_touch * self.grid.weights.reshape(-1, 2, 1, 1)
         total = areas.sum(axis=(1, 3))
-        mean = (np.where(can_touch, cells, 0.0) * areas).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
+        mean = (np.where(can_touch, gaps, 0.0) * areas).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
         lever = self.resultants.lever
         if lever is not None:
             weights = self.grid.weights.reshape(-1, 2)
@@ -347,8 +347,8 @@ def _remove_mean_slope(problem: ContactProblem) -> FloatArray:
     lever = problem.resultants.lever
     if lever is None:
         return problem.gap
-    under_shape = np.isfinite(problem.gap).any(axis=1)
-    lowest, arm = problem.gap[under_shape].min(axis=1), lever[under_shape, 0]
+    is_under_shape = np.isfinite(problem.gap).any(axis=1)
+    lowest, arm = problem.gap[is_under_shape].min(axis=1), lever[is_under_shape, 0]
     slope = np.polynomial.polynomial.polyfit(arm, lowest, 1)[1] if arm.size > 1 else 0.0
     return problem.gap - slope * lever
 
@@ -381,10 +381,10 @@ def cell_means(values: FloatArray) -> FloatArray:
 
 def halve_cells(values: FloatArray, axis: int) -> FloatArray:
     """Values on cells of half the size along an axis, linear between the centres."""
-    centre = np.moveaxis(values, axis, 0)
-    padded = np.concatenate([centre[:1], centre, centre[-1:]])
-    halves = np.stack([0.75 * centre + 0.25 * padded[:-2], 0.75 * centre + 0.25 * padded[2:]], axis=1)
-    return np.ascontiguousarray(np.moveaxis(halves.reshape(-1, *centre.shape[1:]), 0, axis))
+    rows = np.moveaxis(values, axis, 0)
+    padded = np.concatenate([rows[:1], rows, rows[-1:]])
+    halves = np.stack([0.75 * rows + 0.25 * padded[:-2], 0.75 * rows + 0.25 * padded[2:]], axis=1)
+    return np.ascontiguousarray(np.moveaxis(halves.reshape(-1, *rows.shape[1:]), 0, axis))
 
 
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
@@ -433,7 +433,6 @@ def solve_problem(
         applications += iterate.applications
         if not iterate.converged:
             break
-        weights = problem.grid.weights
-        total = float((weights * iterate.pressure).sum())
-        change = float((weights * np.abs(iterate.pressure - previous_pressure)).sum()) / total
+        weights, pressure = problem.grid.weights, iterate.pressure
+        change = float((weights * np.abs(pressure - previous_pressure)).sum() / (weights * pressure).sum())
     return replace(iterate, applications=applications, converged=False)

@@ -48,8 +48,8 @@ class PairOperator:
     def __init__(
         self, body: SurfaceOperator, counterbody: SurfaceOperator | None, transfer: CellTransfer | None, factor: float
     ) -> None:
-        # None as `counterbody` has the displacements of the first body. `factor`: the normal displacement of both
-        # bodies over that of the first.
+        # Without a `counterbody` operator both bodies deform alike. `factor` is the normal displacement of both bodies
+        # over that of the first.
         self.body, self._counterbody, self._transfer, self._factor = body, counterbody, transfer, factor
 
     @classmethod
@@ -88,24 +88,24 @@ class PairOperator:
             load: _reverse_tangential(load, cell_loads if transfer is None else transfer.to_counterbody @ cell_loads)
             for load, cell_loads in loads.items()
         }
-        relative = self.body.compute_displacements(loads, directions)
+        displacements = self.body.compute_displacements(loads, directions)
         for direction, values in self._counterbody.compute_displacements(reaction, directions).items():
             counter_displacement = values if transfer is None else transfer.to_body @ values
-            relative[direction] = relative[direction] + _reverse_tangential(direction, counter_displacement)
-        return relative
+            displacements[direction] = displacements[direction] + _reverse_tangential(direction, counter_displacement)
+        return displacements
 
     def _displacements_of_equal_bodies(
         self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
     ) -> dict[Load, FloatArray]:
         """Relative displacements of equal bodies: none tangentially under a pressure, none normally under tractions."""
-        relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
+        displacements = {direction: np.zeros(self.body.grid.shape) for direction in directions}
         for is_normal in (True, False):
-            acting_loads = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
+            acting_loads = {load: values for load, values in loads.items() if (load is Load.NORMAL) == is_normal}
             components = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
             if acting_loads and components:
                 for direction, displacement in self.body.compute_displacements(acting_loads, components).items():
-                    relative[direction] = self._factor * displacement
-        return relative
+                    displacements[direction] = self._factor * displacement
+        return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure that closes the gap."""
@@ -144,5 +144,5 @@ class PrescribedSurface:
 
     @property
     def coarse(self) -> SurfaceOperator:
-        """Operator of the body on cells of twice the size, for a first guess."""
+        """Operator of the body on cells of twice the size, for an initial guess."""
         return self.body.coarse

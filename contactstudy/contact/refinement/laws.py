@@ -17,8 +17,8 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end. Physics.
-MIN_GROWTH_EXPONENT = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
-MIN_STEP_RATIO = 0.5  # least ratio of the last two steps of a logarithm to the two preceding ones. Accuracy.
+MIN_GROWTH_EXPONENT = 0.12  # least growth exponent between two halvings for a power law. Accuracy.
+MIN_STEP_RATIO = 0.5  # least ratio of the last two steps to the two preceding steps for a logarithm. Accuracy.
 FIT_START, FIT_STOP = 3.0, 64.0  # distances over the outermost width between which the intensity is fitted. Accuracy.
 MIN_FIT_COLUMNS = 3  # least number of columns of a fitted intensity. Accuracy.
 
@@ -53,32 +53,31 @@ class EndLaw:
 
     def with_intensity(self, edges: FloatArray, pressure: FloatArray, face_beyond: float) -> EndLaw:
         """Law with the intensity fitted to the pressure (column, y) at distances much smaller than `face_beyond`."""
-        # The intensity of a lifted end is 0; on too few columns for a fit it follows from the outermost column. Both
-        # have infinite errors.
+        # A lifted end has the intensity 0, too few columns for a fit that of the outermost; both errors are infinite.
         if self.exponent == 0:
             return self
         # Friction moves the contact along y, by different distances at the ends.
-        line = pressure[:, int(pressure[0].argmax())]
-        if line[0] <= 0:
+        pressure = pressure[:, int(pressure[0].argmax())]
+        if pressure[0] <= 0:
             return replace(self, intensity=0.0, intensity_error=np.inf)
         width, exponent, fitted = edges[1], self.exponent, bool(np.isnan(self.exponent))
         if fitted:
             from scipy.optimize import minimize_scalar
 
             bounds = (MIN_GROWTH_EXPONENT, RIGID)
-            optimum = minimize_scalar(lambda m: _fit_law(edges, line, width, m)[1], bounds=bounds, method="bounded")
+            optimum = minimize_scalar(lambda m: _fit_law(edges, pressure, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(optimum.x)
-        fits = [_fit_law(edges, line, width * factor, exponent)[0] for factor in (1.0, 2.0)]
-        if not np.isfinite(fits).all():  # loaded on too few columns
-            intensity = float((1 - exponent) * line[0] * width**exponent)
+        intensities = [_fit_law(edges, pressure, width * factor, exponent)[0] for factor in (1.0, 2.0)]
+        if not np.isfinite(intensities).all():  # loaded on too few columns
+            intensity = float((1 - exponent) * pressure[0] * width**exponent)
             return replace(self, exponent=exponent, intensity=intensity, intensity_error=np.inf, fitted=fitted)
         error_factor = 1.0 if exponent == RIGID else ELASTIC_ERROR_FACTOR
-        error = error_factor * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
+        error = error_factor * abs(intensities[0] - intensities[1]) + STEP_ERROR * intensities[0]
         if 0 < face_beyond < FIT_START * width:  # the columns do not resolve the law
             error = np.inf
         elif FIT_STOP * width > MAX_FIT_RATIO * face_beyond:
-            error += NARROW_FACE_ERROR * fits[0]
-        return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
+            error += NARROW_FACE_ERROR * intensities[0]
+        return replace(self, exponent=exponent, intensity=intensities[0], intensity_error=error, fitted=fitted)
 
 
 def elastic_exponent(edge_compliance: float, face_compliance: float) -> float:
@@ -111,22 +110,22 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     return None
 
 
-def _columns_between(edges: FloatArray, line: FloatArray, start: float, stop: float) -> FloatArray:
+def _columns_between(edges: FloatArray, axial_pressure: FloatArray, start: float, stop: float) -> FloatArray:
     """Edges and pressures (3, column) of the loaded columns between two distances."""
-    columns = np.stack([edges[:-1], edges[1:], line])
-    return columns[:, (edges[:-1] >= 0.999 * start) & (edges[1:] <= 1.001 * stop) & (line > 0)]
+    columns = np.stack([edges[:-1], edges[1:], axial_pressure])
+    return columns[:, (edges[:-1] >= 0.999 * start) & (edges[1:] <= 1.001 * stop) & (axial_pressure > 0)]
 
 
-def _fit_law(edges: FloatArray, line: FloatArray, width: float, exponent: float) -> tuple[float, float]:
+def _fit_law(edges: FloatArray, axial_pressure: FloatArray, width: float, exponent: float) -> tuple[float, float]:
     """Fit ``K d**-m (1 + c d)`` to the columns' means by relative least squares; return K and the residual."""
-    low, high, values = _columns_between(edges, line, FIT_START * width, FIT_STOP * width)
-    if values.size < MIN_FIT_COLUMNS:
+    low, high, pressure = _columns_between(edges, axial_pressure, FIT_START * width, FIT_STOP * width)
+    if pressure.size < MIN_FIT_COLUMNS:
         return np.nan, np.inf
     powers = [1 - exponent, 2 - exponent]
     # eq. (41)
     means = [(high**power - low**power) / (power * (high - low)) for power in powers]
-    matrix = np.stack(means, axis=1) / values[:, None]
-    coefficients = np.linalg.lstsq(matrix, np.ones(values.size), rcond=None)[0]
+    matrix = np.stack(means, axis=1) / pressure[:, None]
+    coefficients = np.linalg.lstsq(matrix, np.ones(pressure.size), rcond=None)[0]
     return float(coefficients[0]), float(np.sqrt(np.mean((matrix @ coefficients - 1) ** 2)))
 
 
@@ -193,8 +192,8 @@ def corner_law(
     sides = (edges[index:] - x, axial_pressure[index:]), (x - edges[index::-1], axial_pressure[index - 1 :: -1])
     # On the outer side, which carries less, the contact ends at d0 / 4 from a steep corner.
     reach = CORNER_FIT_STOP * float(edges[index + 1] - x)
-    distances, values = max(sides, key=lambda side: float(np.diff(np.minimum(side[0], reach)) @ side[1]))
-    log_distances = [_log_distance(distances, values, distances[1] * factor) for factor in (1.0, 2.0)]
+    edge_distances, ratio = max(sides, key=lambda side: float(np.diff(np.minimum(side[0], reach)) @ side[1]))
+    log_distances = [_log_distance(edge_distances, ratio, edge_distances[1] * factor) for factor in (1.0, 2.0)]
     distance = float(np.exp(log_distances[0]))
     error = distance * (abs(float(np.expm1(log_distances[1] - log_distances[0]))) + CORNER_STEP_ERROR)
     return CornerLaw(

@@ -1,8 +1,8 @@
 """Contact of a case on columns that are refined until peak and end pressures are accurate, with stick and slip.
 
-The tractions are solved on the columns of the normal contact and half of its cells along y, then on all, and on twice
-as many until forces and creepages change by less than the accuracy. Their error is of first order in the cells at most:
-the last change estimates it, and the errors of the columns and of the leading edge of unlike bodies are added.
+The tractions are solved on the columns of the normal contact: on half of its cells along y, on all, and on twice as
+many until forces and creepages change by less than the accuracy. The last change estimates their error, at most of
+first order in the cell size; the errors of the columns and of the leading edge of unlike bodies are added.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ Tractions with stick and slip are also solved on half of the cells and depend on
 
 WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows, so that similar cases share end kernels. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small. Physics.
-CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # numbers along y to choose from; of the coarse contact. Accuracy.
+CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # along y: allowed numbers, number of the coarse contact. Accuracy.
 
 MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
@@ -129,7 +129,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
 
 
 def _convex_corners(case: Case) -> list[tuple[float, float]]:
-    """Convex corners of a formula profile: position and jump of the slope."""
+    """Convex corners of a profile given by a formula: position and jump of the slope."""
     if as_shape(case.roller.profile).second_interpolation() is not None:
         return []
     return [(x, jump) for x, jump in zip(*(values.tolist() for values in case.slope_jumps), strict=True) if jump > 0]
@@ -142,21 +142,20 @@ def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axial
     if other_profile is None:
         return refined
     solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other_profile)))
-    pressure = solver(refined.edges, refined.pressure, VALUE_TOLERANCE).pressure
-    new_values = replace_pressure(refined, pressure, shape).values
+    new = replace_pressure(refined, solver(refined.edges, refined.pressure, VALUE_TOLERANCE).pressure, shape).values
     errors = {
         name: [
             error + DATA_ERROR * (abs(value - new_value) if np.isfinite(value) else 0.0)
-            for error, value, new_value in zip(errors, refined.values[name], new_values[name], strict=True)
+            for error, value, new_value in zip(errors, refined.values[name], new[name], strict=True)
         ]
         for name, errors in refined.errors.items()
     }
     for x, jump in zip(*case.slope_jumps, strict=True):
         column = int(np.clip(np.searchsorted(refined.edges, x) - 1, 0, refined.edges.size - 2))
-        side = int(x > 0.5 * (shape.start + shape.stop))
-        peak = refined.values["peak_pressure"][side]
+        end = int(x > 0.5 * (shape.start + shape.stop))
+        peak = refined.values["peak_pressure"][end]
         if jump * case.modulus > MAX_CORNER_JUMP * peak and refined.pressure[column].any():
-            errors["peak_pressure"][side] = np.inf
+            errors["peak_pressure"][end] = np.inf
     return replace(refined, errors=errors)
 
 
@@ -173,12 +172,12 @@ def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
     corner = max(filter(None, laws), key=lambda law: law.intensity, default=None)  # None at corners without contact
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = refined_contact.contact.shape.grid.dy
-    for side, end in enumerate(("first", "last")):
+    for end, suffix in enumerate(("first", "last")):
         for name, end_values in refined.values.items():
             factor = dy if name == "end_load" else 1.0
-            values[f"{name}_{end}"] = factor * end_values[side]
-            values[f"{name}_{end}_error"] = factor * refined.errors[name][side]
-        values |= _law_values(refined.laws[side], f"_{end}")
+            values[f"{name}_{suffix}"] = factor * end_values[end]
+            values[f"{name}_{suffix}_error"] = factor * refined.errors[name][end]
+        values |= _law_values(refined.laws[end], f"_{suffix}")
     sharper_law = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
     values |= _law_values(sharper_law)
     if corner is not None:
@@ -257,8 +256,8 @@ class _ColumnSolver:
 
 def _roller_columns(grid: Grid, edges: FloatArray) -> slice:
     """Columns of a grid under the roller, between `edges`."""
-    first = int(np.abs(grid.x_edges - edges[0]).argmin())
-    return slice(first, first + edges.size - 1)
+    first_column = int(np.abs(grid.x_edges - edges[0]).argmin())
+    return slice(first_column, first_column + edges.size - 1)
 
 
 def _pad_to_grid(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
@@ -309,17 +308,17 @@ def _axial_shape(case: Case) -> AxialShape:
 
 
 LOAD_POWER, LOAD_POWER_RANGE = 1.2, (1.0, 2.0)
-"""Exponent of the load as a power of the depth from first touch: initial guess, and bounds. A line contact has
-10/9, a point contact 3/2. Speed."""
+"""Exponent of the load as a power of the depth from first touch: initial guess, and bounds. The exponent is
+10/9 of a line contact, 3/2 of a point contact. Speed."""
 
 MAX_EXCESS_DEPTH, MAX_MISSING_DEPTH, MAX_CORRECTIONS = 0.05, 0.005, 12
 """Fractions of the prescribed depth by which a contact may be too deep or too shallow to reuse its columns and window,
 and the largest number of corrections of the load. Speed."""
 
-LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
+LOAD_EXCESS = 1.02  # factor on a corrected load, because a shallower contact's window is too narrow. Speed.
 COARSE_ACCURACY, COARSE_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
-SLICES, SLICE_WIDTH = 200, 0.3  # for the initial load: number, half-width over the undeformed overlap's. Speed.
+SLICES, SLICE_WIDTH = 200, 0.3  # slices for the initial load: number, half-width over the overlap's. Speed.
 
 
 def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
@@ -341,8 +340,7 @@ def search_load(case: Case, approach: float, load: float, accuracy: float, toler
         if 1 - MAX_MISSING_DEPTH <= depth / prescribed_depth <= 1 + MAX_EXCESS_DEPTH:
             break
         if 0 < previous_depth != depth:
-            secant_power = np.log(load / previous_load) / np.log(depth / previous_depth)
-            power = float(np.clip(secant_power, *LOAD_POWER_RANGE))
+            power = float(np.clip(np.log(load / previous_load) / np.log(depth / previous_depth), *LOAD_POWER_RANGE))
         previous_load, previous_depth = load, depth
         load *= LOAD_EXCESS * (prescribed_depth / depth) ** power
     prescribed = PrescribedLoad(approach=approach).check(shape.gap.values, shape.grid)
@@ -479,7 +477,7 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     sliding = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
     if not isinstance(case.motion, Rolling):
         sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
-    rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
-    max_slip = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
+    slips = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.amplitudes.items()}
+    max_slip = max(abs(slips["x"]), abs(slips["y"]), slips.get("spin", 0.0) * moment / force if force else 0.0)
     scales = {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * max_slip}
-    return scales | dict(zip(contact.rigid_motions, rigid.values(), strict=True))
+    return scales | dict(zip(contact.rigid_motions, slips.values(), strict=True))

@@ -24,8 +24,8 @@ SAMPLE_POSITIONS = np.linspace(0.0, 1.0, 257)
 and narrower ridges are missed."""
 
 PENETRATION_TOLERANCE = 0.02
-"""Depth, over ``a**2 / 2R``, by which the shape may come below the displaced top in a column that is open. Accuracy: a
-crest that is missed then carries 0.14 of the Hertz pressure at most."""
+"""Largest depth, over ``a**2 / 2R``, of the shape below the displaced top in an open column. Accuracy: a missed crest
+then carries 0.14 of the Hertz pressure at most."""
 
 MIN_CHORD_WIDTH = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
 MAX_WIDTH_RATIO = 2.6  # largest ratio of neighbouring widths. Accuracy.
@@ -52,9 +52,9 @@ class AxialShape:
         """Heights at the nodes, metres."""
         return self.height(self.nodes)
 
-    def is_singular(self, side: int) -> bool:
+    def is_singular(self, end: int) -> bool:
         """Whether the pressure at an end is singular if the end is loaded."""
-        return self.exponents[side] > 0
+        return self.exponents[end] > 0
 
 
 def first_edges(shape: AxialShape) -> FloatArray:
@@ -105,8 +105,7 @@ def _insert_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
 
 def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
     """Mark columns in which a solved contact misses details of the shape: a bend under pressure, or an open crest."""
-    # An open column is overlooked if the shape lies below the displaced surface, except next to a contact that ends
-    # in the column.
+    # An open column is overlooked if the shape lies below the displaced surface, unless a contact ends in the column.
     heights, lowest, is_bent = _sample(shape, edges)
     rigid_height = heights.mean(axis=1) - opening
     lowest_point = heights.argmin(axis=1)
@@ -175,8 +174,8 @@ def evaluate_pairs(
     half_length, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
     loaded_corners = _loaded_corners(shape.corners, edges, pressure)
     values: dict[str, list[float]] = {"peak_pressure": [], "end_pressure": [], "end_load": []}
-    for side, law in enumerate(laws):
-        distances, axial_pressure = count_from_end(side, edges, maxima)
+    for end, law in enumerate(laws):
+        distances, axial_pressure = count_from_end(end, edges, maxima)
         end_pressure = np.inf if law else _extrapolate_to_end(distances, axial_pressure)
         half_pressure = axial_pressure[centres_of(distances) < half_length]
         # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
@@ -184,10 +183,10 @@ def evaluate_pairs(
         # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
         if half_pressure.argmax() == 0:
             peak = max(peak, end_pressure)
-        is_unbounded = law or any(corner >= mid_x if side else corner <= mid_x for corner in loaded_corners)
+        is_unbounded = law or any(corner >= mid_x if end else corner <= mid_x for corner in loaded_corners)
         values["peak_pressure"].append(np.inf if is_unbounded else peak)
         values["end_pressure"].append(end_pressure)
-        column_sums = count_from_end(side, edges, sums)[1]
+        column_sums = count_from_end(end, edges, sums)[1]
         values["end_load"].append(float(column_sums @ np.diff(np.minimum(distances, shape.half_width))))
     return values, float(maxima.max() / pressure.max()) - 1
 
@@ -198,9 +197,9 @@ def _loaded_corners(corners: tuple[float, ...], edges: FloatArray, pressure: Flo
     return [corner for corner, i in zip(corners, indices, strict=True) if pressure[i - 1 : i + 1].any()]
 
 
-def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def count_from_end(end: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distances of the edges from an end of the shape, and the values in the order from this end."""
-    return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
+    return (edges - edges[0], values) if end == 0 else (edges[-1] - edges[::-1], values[::-1])
 
 
 def _extrapolate_to_end(edges: FloatArray, axial_pressure: FloatArray) -> float:
@@ -214,7 +213,7 @@ def _extrapolate_to_end(edges: FloatArray, axial_pressure: FloatArray) -> float:
 
 LOGGER = logging.getLogger(__name__)
 
-FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # First threshold, successive ratio, largest last. Accuracy.
+FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # Thresholds: first, successive ratio, largest last. Accuracy.
 SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold of the jumps in a rough contact. Speed.
 THETA_PER_ERROR = 50.0  # Threshold over the least stated error; with 100 it is too small at 1 to 4 % of ends. Accuracy.
 END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loaded end, extrapolated linearly. Accuracy.
@@ -258,8 +257,8 @@ class RefinedColumns:
     @property
     def peak_error(self) -> float:
         """Estimated error of the largest pressure, Pa."""
-        pairs = zip(self.values["peak_pressure"], self.errors["peak_pressure"], strict=True)
-        return max(error for peak, error in pairs if peak == self.peak)
+        peaks_and_errors = zip(self.values["peak_pressure"], self.errors["peak_pressure"], strict=True)
+        return max(error for peak, error in peaks_and_errors if peak == self.peak)
 
 
 def refine_coarsely(solve: Solve, shape: AxialShape) -> Refinement:
@@ -302,7 +301,7 @@ class Refinement:
     @property
     def singular(self) -> bool:
         """Whether an end has a law, or will have a law because it is sharp and loaded."""
-        return any(self.laws) or any(self.shape.is_singular(side) and self.pressure[-side].any() for side in (0, 1))
+        return any(self.laws) or any(self.shape.is_singular(end) and self.pressure[-end].any() for end in (0, 1))
 
     def refine(self, theta: float) -> None:
         """Split columns until no column is marked."""
@@ -326,25 +325,25 @@ class Refinement:
 
     def _record_samples(self) -> None:
         """Record the pressures of the outermost columns after a splitting, and determine the laws of the ends."""
-        for side, samples in enumerate(self.samples):
-            edges, pressure = count_from_end(side, self.edges, self.pressure)
+        for end, samples in enumerate(self.samples):
+            edges, pressure = count_from_end(end, self.edges, self.pressure)
             width = float(edges[1])
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
-                if self.laws[side] is None and width <= MIN_END_COLUMN * self.shape.half_width:
-                    self.laws[side] = law_of(samples, self.shape.exponents[side])
+                if self.laws[end] is None and width <= MIN_END_COLUMN * self.shape.half_width:
+                    self.laws[end] = law_of(samples, self.shape.exponents[end])
 
     def _select_columns_to_split(self, theta: float) -> BoolArray:
         """Mark the columns to split at the threshold `theta`."""
         edges, pressure, a = self.edges, self.pressure, self.shape.half_width
         widths, max_pressure = np.diff(edges), pressure.max()
         jumps = pressure_jumps(edges, pressure)
-        for side, (i, j) in enumerate(((0, 1), (-1, -2))):
-            if self.laws[side] is None and pressure[i].max() > 0:
+        for end, (i, j) in enumerate(((0, 1), (-1, -2))):
+            if self.laws[end] is None and pressure[i].max() > 0:
                 step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / max_pressure
                 jumps[i] = max(jumps[i], END_STEP_WEIGHT * step)
-                rises_to_end = pressure[i].max() >= self._half_pressure(side).max()
-                is_sharp = self.shape.is_singular(side) or self.shape.face_beyond[side] > 0 or rises_to_end
+                rises_to_end = pressure[i].max() >= self._half_pressure(end).max()
+                is_sharp = self.shape.is_singular(end) or self.shape.face_beyond[end] > 0 or rises_to_end
                 if widths[i] > (MIN_END_COLUMN if is_sharp else END_COLUMN_WIDTH) * a:
                     jumps[i] = np.inf
         loaded_columns = np.flatnonzero(pressure.any(axis=1))
@@ -357,14 +356,14 @@ class Refinement:
         corner_distance = np.min(distances, axis=0, initial=a)
         is_wide = widths > np.maximum(MIN_END_COLUMN * a, CORNER_GROWTH * corner_distance)
         is_marked = np.where(corner_distance < a, is_wide, is_marked)
-        for side, outer_columns in enumerate(((0, 1), (-1, -2))):
-            if self.laws[side] is not None:
+        for end, outer_columns in enumerate(((0, 1), (-1, -2))):
+            if self.laws[end] is not None:
                 is_marked[list(outer_columns)] = False
         return is_marked
 
-    def _half_pressure(self, side: int) -> FloatArray:
+    def _half_pressure(self, end: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
-        return np.asarray(self.pressure[first_half if side == 0 else ~first_half])
+        return np.asarray(self.pressure[first_half if end == 0 else ~first_half])
 
     def record_result(self, theta: float, accuracy: float) -> RefinedColumns:
         """Columns of a threshold, with values and errors; record the values in the history."""
@@ -376,20 +375,20 @@ class Refinement:
         # The scale of `end_load` is the mean load per length times a half-width.
         length = float(self.edges[-1] - self.edges[0])
         end_load = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
-        least_errors = dict.fromkeys(("peak_pressure", "end_pressure"), least_error)
-        least_errors["end_load"] = end_load * least_error / scale
+        end_load_error = end_load * least_error / scale
+        least_errors = {"peak_pressure": least_error, "end_pressure": least_error, "end_load": end_load_error}
         errors = {
-            name: [_change_error([earlier[name][side] for _, earlier in self.history], bound) for side in (0, 1)]
+            name: [_change_error([earlier[name][end] for _, earlier in self.history], bound) for end in (0, 1)]
             for name, bound in least_errors.items()
         }
-        for side in (0, 1):
-            fades_out = self.shape.has_fading_end and self.shape.face_beyond[side] == 0
+        for end in (0, 1):
+            fades_out = self.shape.has_fading_end and self.shape.face_beyond[end] == 0
             # The pressure at an end, sharp or fading at the end of the face, does not converge and has no law.
-            diverges = (self.shape.is_singular(side) or fades_out) and self.laws[side] is None
-            if diverges and self.pressure[-side].any():
-                errors["end_pressure"][side] = np.inf
-                if self._half_pressure(side).max() <= self.pressure[-side].max():
-                    errors["peak_pressure"][side] = np.inf
+            diverges = (self.shape.is_singular(end) or fades_out) and self.laws[end] is None
+            if diverges and self.pressure[-end].any():
+                errors["end_pressure"][end] = np.inf
+                if self._half_pressure(end).max() <= self.pressure[-end].max():
+                    errors["peak_pressure"][end] = np.inf
         finite_errors = [error for error in errors["peak_pressure"] + errors["end_pressure"] if np.isfinite(error)]
         accurate = max(errors["end_load"]) <= accuracy * end_load
         accurate &= max(finite_errors, default=least_error) <= accuracy * scale
@@ -425,8 +424,8 @@ def _fit_laws(
 ) -> list[EndLaw | None]:
     """Laws of both ends with the intensities of a pressure (column, y)."""
     return [
-        law and law.with_intensity(*count_from_end(side, edges, pressure), shape.face_beyond[side])
-        for side, law in enumerate(laws)
+        law and law.with_intensity(*count_from_end(end, edges, pressure), shape.face_beyond[end])
+        for end, law in enumerate(laws)
     ]
 
 

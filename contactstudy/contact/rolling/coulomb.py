@@ -33,7 +33,7 @@ class CoulombProblem:
     apply_compliance: Operator  # ``B``: slip (2, cell) that tractions (2, cell) relieve
     inverse: Operator  # approximate inverse of ``B``
     bound: FloatArray  # (cell): largest traction, Pa; positive
-    rigid: FloatArray  # (2, cell): prescribed slip of rigid surfaces
+    prescribed_slip: FloatArray  # (2, cell): slip of rigid surfaces under the prescribed motions
     modes: FloatArray  # (mode, 2, cell): rigid slips of unknown amplitude
     resultant_weights: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
     resultants: FloatArray  # (mode): prescribed resultants
@@ -48,7 +48,7 @@ class CoulombProblem:
 
     def rigid_slip(self, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) of rigid surfaces."""
-        return np.asarray(self.rigid + np.tensordot(amplitudes, self.modes, axes=1))
+        return np.asarray(self.prescribed_slip + np.tensordot(amplitudes, self.modes, axes=1))
 
     def slip_scale(self, amplitudes: FloatArray) -> float:
         """Largest rigid slip, the scale of violations."""
@@ -83,16 +83,15 @@ def law_violation(
     max_bound = float(bound.max(initial=0.0))
     excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / max_bound if max_bound else 0.0  # eq. (43)
     direction = traction / np.where(size > 0, size, 1.0)
-    parallel = (slip * direction).sum(axis=0)
-    across = slip[0] * direction[1] - slip[1] * direction[0]
-    violation = np.where(sticks, np.hypot(*slip), np.hypot(across, np.minimum(parallel, 0.0)))
+    parallel_slip = (slip * direction).sum(axis=0)
+    transverse_slip = slip[0] * direction[1] - slip[1] * direction[0]
+    violation = np.where(sticks, np.hypot(*slip), np.hypot(transverse_slip, np.minimum(parallel_slip, 0.0)))
     return excess, float(violation.max(initial=0.0)) / scale
 
 
 def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
     """Solve Coulomb's law; where Newton's method does not converge, raise prescribed resultants step by step."""
-    # Near full sliding few cells stick. Resultants between two admissible resultants are admissible, so every step
-    # has a solution.
+    # Near full sliding few cells stick. Between two admissible resultants all are admissible: every step is solvable.
     if not len(problem.modes) or problem.max_steps <= MAX_DIRECT_STEPS:
         return solve_coulomb(problem, start)
     solution = solve_coulomb(replace(problem, max_steps=MAX_DIRECT_STEPS), start)
@@ -119,10 +118,10 @@ def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None)
 def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
     """Solve Coulomb's law by a semi-smooth Newton method."""
     bound = problem.bound
-    traction = np.zeros_like(problem.rigid)
+    traction = np.zeros_like(problem.prescribed_slip)
     sticks = np.ones(bound.size, bool)
     amplitudes = np.zeros(len(problem.modes))
-    slip = problem.rigid.copy()
+    slip = problem.prescribed_slip.copy()
     if start is not None:
         size, amplitudes = np.hypot(*start.traction), start.amplitudes
         sticks = size < (1 - GUESS_TOLERANCE) * bound
@@ -161,7 +160,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             change_fraction = 0.5 * change_fraction if sticks.tobytes() in visited else min(1.0, 2 * change_fraction)
             visited.add(sticks.tobytes())
         if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
-            # Each descent continues the last one: the energy decreases whatever Newton's steps in between do.
+            # Each descent continues the previous descent: Newton steps in between do not raise the energy.
             descent = balance_tractions(problem, descent or Guess(limit_tractions(traction, bound), amplitudes), scale)
             traction, amplitudes = descent
             slip, change_fraction = problem.slip(traction, amplitudes), 1.0
@@ -171,12 +170,12 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
     )
 
 
-def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
+def _select_first(is_member: BoolArray, fraction: float) -> BoolArray:
     """Select the first cells of a set: a fraction of their number, at least one."""
     if fraction == 1:
-        return cells
-    indices = np.flatnonzero(cells)
-    is_selected = np.zeros_like(cells)
+        return is_member
+    indices = np.flatnonzero(is_member)
+    is_selected = np.zeros_like(is_member)
     is_selected[indices[: max(1, int(fraction * indices.size))]] = True
     return is_selected
 
@@ -227,8 +226,8 @@ def _newton_step(
     def components_of(slip: FloatArray) -> FloatArray:
         return np.asarray(transposed @ (root * slip).ravel())
 
-    parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
-    slip_ratio = np.append(np.where(sticks, 0.0, parallel / problem.bound), np.zeros(int(sticks.sum())))
+    parallel_slip = np.maximum((slip * direction).sum(axis=0), 0.0)
+    slip_ratio = np.append(np.where(sticks, 0.0, parallel_slip / problem.bound), np.zeros(int(sticks.sum())))
     # Spin (1/m) and moment (N m) are scaled to the units of slip, so that one residual contains all unknowns.
     count, shape = slip_ratio.size, (len(problem.modes), slip_ratio.size)
     mode_sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
@@ -247,16 +246,16 @@ def _newton_step(
     schur = weights @ inverse_modes.T
 
     def multiply(unknowns: FloatArray) -> FloatArray:
-        tractions, rigid = unknowns[:count], unknowns[count:]
+        tractions, rigid_slips = unknowns[:count], unknowns[count:]
         slip = components_of(problem.apply_compliance(tractions_of(tractions))) + slip_ratio * tractions
-        return np.concatenate([slip - rigid @ modes, weights @ tractions])
+        return np.concatenate([slip - rigid_slips @ modes, weights @ tractions])
 
     def precondition(residual: FloatArray) -> FloatArray:
         tractions = invert(residual[:count])
         if not len(modes):
             return tractions
-        rigid = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
-        return np.concatenate([tractions + rigid @ inverse_modes, rigid])
+        rigid_slips = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
+        return np.concatenate([tractions + rigid_slips @ inverse_modes, rigid_slips])
 
     resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / resultant_units
     residual = np.concatenate([components_of(slip), resultant_errors])
@@ -270,11 +269,11 @@ def _diagonal(problem: CoulombProblem) -> FloatArray:
     """Slip that a traction relieves in its cell, per traction: array (cell), one value for each width of cells."""
     diagonal = np.empty_like(problem.bound)
     for area in np.unique(problem.relative_areas):
-        cells = problem.relative_areas == area
-        unit_slip = np.zeros_like(problem.rigid)
-        cell = int(np.where(cells, problem.bound, 0.0).argmax())
+        has_area = problem.relative_areas == area
+        unit_slip = np.zeros_like(problem.prescribed_slip)
+        cell = int(np.where(has_area, problem.bound, 0.0).argmax())
         unit_slip[1, cell] = 1.0
-        diagonal[cells] = abs(1.0 / problem.inverse(unit_slip)[1, cell])
+        diagonal[has_area] = abs(1.0 / problem.inverse(unit_slip)[1, cell])
     return diagonal
 
 
@@ -290,11 +289,11 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> Gu
 
     def minimize_energy(amplitudes: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         nonlocal traction
-        rigid = problem.rigid_slip(amplitudes)
+        rigid_slip = problem.rigid_slip(amplitudes)
         traction, slip = descend_energy(
-            problem.apply_compliance, rigid - problem.apply_compliance(traction), traction, bound, areas
+            problem.apply_compliance, rigid_slip - problem.apply_compliance(traction), traction, bound, areas
         )
-        return traction, slip, rigid
+        return traction, slip, rigid_slip
 
     if not amplitudes.size:
         return Guess(minimize_energy(amplitudes)[0], amplitudes)
@@ -303,8 +302,8 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> Gu
     energy_unit = scale * float(max_resultants.max())
 
     def dual_energy(scaled_amplitudes: FloatArray) -> tuple[float, FloatArray]:
-        tractions, slip, rigid = minimize_energy(scale * scaled_amplitudes)
-        energy = 0.5 * area * float((areas * tractions * (rigid + slip)).sum()) - float(
+        tractions, slip, rigid_slip = minimize_energy(scale * scaled_amplitudes)
+        energy = 0.5 * area * float((areas * tractions * (rigid_slip + slip)).sum()) - float(
             scale * scaled_amplitudes @ problem.resultants
         )
         return energy / energy_unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / energy_unit

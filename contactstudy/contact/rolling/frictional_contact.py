@@ -69,9 +69,9 @@ class FrictionalContact:
     @property
     def rigid_motions(self) -> dict[str, float]:
         """Rigid motions by their names in results."""
-        rigid = self.tractions.rigid
-        names = AMPLITUDE_NAMES[Rolling if "spin" in rigid else Shift]
-        return {names[mode]: amplitude for mode, amplitude in rigid.items()}
+        amplitudes = self.tractions.amplitudes
+        names = AMPLITUDE_NAMES[Rolling if "spin" in amplitudes else Shift]
+        return {names[mode]: amplitude for mode, amplitude in amplitudes.items()}
 
     def with_tractions(self, result: xr.Dataset) -> xr.Dataset:
         """Labelled contact with tractions, slip, resultants and certificate in place of full sliding."""
@@ -95,7 +95,7 @@ class FrictionalContact:
             "converged": self.converged,
         }
         complete = result.assign({name: (("x", "y"), values) for name, values in fields.items()}).assign(scalars)
-        slip_unit, work_unit = ("1", "J/m") if "spin" in tractions.rigid else ("m", "J")
+        slip_unit, work_unit = ("1", "J/m") if "spin" in tractions.amplitudes else ("m", "J")
         for name, unit in (("slip_x", slip_unit), ("slip_y", slip_unit), ("friction_work", work_unit)):
             complete[name].attrs["units"] = unit
         return describe(complete)
@@ -133,7 +133,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             displacements = operator.compute_displacements(loads, (Load.NORMAL,))
             previous_pressure = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + displacements[Load.NORMAL])), settings)
-            # The first coupled pressure fixes sliding columns and leading edges: new ones per round would alternate.
+            # The first coupled pressure fixes sliding columns and leading edges, which might alternate between rounds.
             tractions = solve_for_pressure(contact.pressure, tractions if round_index else None)
             change = float(np.abs(contact.pressure - previous_pressure).sum() / contact.pressure.sum())
             if change <= tolerance:

@@ -63,7 +63,7 @@ class Tractions:
     slip: FloatArray  # (2, x, y): per distance rolled, or metres in a shift; 0 where cells stick or bear no pressure
     sticks: BoolArray  # (x, y): sticking cells of the contact
     bound: FloatArray  # (x, y): bound on the traction, Pa
-    rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
+    amplitudes: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
     resultants: Mapping[str, float]  # forces and moment on the body, N and N m, by their names in results
     work: float  # frictional work: per distance rolled, J/m, or of the shift, J
     bound_error: float = 0.0  # certificate: traction above the bound, over the largest bound
@@ -77,7 +77,7 @@ class Tractions:
     def of(
         cls,
         surfaces: Surfaces,
-        rigid: Mapping[str, float],
+        amplitudes: Mapping[str, float],
         *,
         bound: FloatArray,
         traction: FloatArray,
@@ -91,7 +91,7 @@ class Tractions:
             slip=slip,
             sticks=sticks,
             bound=bound,
-            rigid=rigid,
+            amplitudes=amplitudes,
             resultants=dict(zip(RESULTANTS.values(), resultants, strict=True)),
             work=float((traction * slip * surfaces.areas).sum()),
         )

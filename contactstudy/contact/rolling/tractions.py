@@ -35,11 +35,11 @@ from contactstudy.contact.rolling.surfaces import TANGENTIAL, LeadingEdges, Surf
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 
-MIN_LEADING_LENGTH = 0.72  # least part c in the contact of a leading cell with an unknown traction. Accuracy.
-EDGE_OFFSET = -0.84  # position b of the slip less the part c. Accuracy.
+MIN_LEADING_LENGTH = 0.72  # least fraction c in the contact of a leading cell with an unknown traction. Accuracy.
+EDGE_OFFSET = -0.84  # position b of the slip less the fraction c. Accuracy.
 DEPENDENT_OFFSET, SLIPPING_OFFSET = 0.475, 1 / 3  # position b with a dependent or slipping leading cell. Accuracy.
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
-LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: from a nearly unloaded cell to a part of the next. Accuracy.
+LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of c, from a nearly unloaded cell to a fraction of the next. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,8 +119,7 @@ class RollingCells:
 
 def averaging_weights(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray | None:
     """Weights (column, column) of all columns in each column's offset of the slip; None if columns are far apart."""
-    # At different offsets the slips of neighbours nearer than a cell's length would differ by more than their
-    # tractions.
+    # At different offsets the slips of columns within a cell's length would differ by more than their tractions.
     proximity = np.maximum(1 - np.abs(x[:, None] - x) / dy, 0.0)
     return proximity * widths if np.count_nonzero(proximity) > x.size else None
 
@@ -206,7 +205,7 @@ def solve_tractions(
         if not previous.converged:
             return _average_slip(previous, surfaces, displacements)
         steps = previous.steps
-    # Slipping edges that each pressure of a coupled contact determined anew would alternate.
+    # Slipping edges determined anew for each pressure of a coupled contact would alternate.
     leading_edges = previous.leading or LeadingEdges(find_slipping_edges(previous.sticks, bound > 0), pressure)
     cells = RollingCells.of(pressure, bound, weights, leading_edges)
     tractions = solve(cells, settings.tolerance, guess_from_last(previous, cells, motion.modes))
@@ -216,7 +215,7 @@ def solve_tractions(
 
 def find_slipping_edges(sticks: BoolArray, loaded: BoolArray) -> BoolArray:
     """Whether the leading cell of each column slips (x)."""
-    # At a sticking edge the traction begins as a square root, which eq. (44a) corrects; a slipping one has its bound.
+    # The traction begins as a square root at a sticking edge, which eq. (44a) corrects; it equals its bound otherwise.
     last_columns = loaded.shape[1] - 1 - loaded[:, ::-1].argmax(axis=1)
     return np.asarray(~sticks[np.arange(last_columns.size), last_columns])
 
@@ -241,7 +240,7 @@ def _coulomb_problem(
     rows, columns = cells.unknown
     x, y = grid.x[rows], grid.y[columns] + cells.offset * grid.dy
     unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
-    rigid = elastic_slip(load_displacements) + sum(
+    prescribed_slip = elastic_slip(load_displacements) + sum(
         (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes), np.zeros((2, 1))
     )  # eq. (44)
     mode_weights = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
@@ -249,9 +248,9 @@ def _coulomb_problem(
         apply_compliance=apply_compliance,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=is_rolling),
         bound=cells.limits,
-        rigid=rigid,
-        modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
-        resultant_weights=mode_weights.reshape(len(modes), *rigid.shape),
+        prescribed_slip=prescribed_slip,
+        modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *prescribed_slip.shape),
+        resultant_weights=mode_weights.reshape(len(modes), *prescribed_slip.shape),
         resultants=np.array(list(motion.resultants.values())),
         relative_areas=np.broadcast_to(grid.weights, grid.shape)[cells.is_unknown],
         symmetric=not is_rolling,
@@ -289,8 +288,8 @@ def _complete_tractions(
     bound_error, slip_error = law_violation(solution.traction, solution.slip, problem.bound, solution.sticks, scale)
     traction = cells.ratio * cells.on_grid(solution.traction)
     slip, sticks = cells.on_grid(np.where(solution.sticks, 0.0, solution.slip)), cells.on_grid(solution.sticks)
-    rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
-    tractions = Tractions.of(surfaces, rigid, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
+    amplitudes = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
+    tractions = Tractions.of(surfaces, amplitudes, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
     max_resultants = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
     errors = [
         abs(tractions.resultants[name] - motion.resultants[mode]) / max(size, 1e-300)
@@ -317,7 +316,7 @@ def _average_slip(tractions: Tractions, surfaces: Surfaces, displacements: Mappi
     response = surfaces.operator.compute_displacements(loads, TANGENTIAL)
     displacement = np.stack([displacements[direction] + response[direction] for direction in TANGENTIAL])
     mean_slip = np.gradient(displacement, grid.dy, axis=2)  # eq. (44)
-    for name, amplitude in tractions.rigid.items():
+    for name, amplitude in tractions.amplitudes.items():
         mean_slip += amplitude * surfaces.rigid_slip(name, grid.x[:, None], grid.y)
     work = float((traction * mean_slip * surfaces.areas).sum())
     traction_size = np.hypot(*traction)
@@ -346,7 +345,7 @@ def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, 
     limited = interpolated * np.minimum(1.0, MAX_STICKING_RATIO / np.where(size > 0, size, 1.0))
     sticks = coarse.sticks[parent_cells]
     traction = np.where(sticks, limited, fraction[:, parent_cells[0], parent_cells[1]]) * cells.limits
-    return Guess(traction, np.array([coarse.rigid[name] for name in modes]))
+    return Guess(traction, np.array([coarse.amplitudes[name] for name in modes]))
 
 
 def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
@@ -354,7 +353,7 @@ def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, 
     traction, limit = previous.traction[:, cells.is_unknown], cells.limits
     size = np.hypot(*traction)
     limited = np.where(previous.sticks[cells.is_unknown], np.minimum(size, MAX_STICKING_RATIO * limit), limit)
-    amplitudes = np.array([previous.rigid[name] for name in modes])
+    amplitudes = np.array([previous.amplitudes[name] for name in modes])
     return Guess(traction * (limited / np.where(size > 0, size, 1.0)), amplitudes)
 
 
@@ -372,8 +371,7 @@ class TangentialInverse:
         self._shape = tuple(fft.next_fast_len(int(2 * count), real=True) for count in window_size)
         x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
         kernels = _compliances(materials, lambda response, poisson: surface_kernel(response, poisson, x, y, cell))
-        responses = zip(kernels, COMPONENTS, strict=True)
-        xx, xy, yy = (_spectrum(kernel, response, self._shape) for kernel, response in responses)
+        xx, xy, yy = (_spectrum(*response, self._shape) for response in zip(kernels, COMPONENTS, strict=True))
         if rolling:
             derivative = _derivative(self._shape[1], cell[1])
             xx, xy, yy = derivative * xx, derivative * xy, derivative * yy
@@ -478,7 +476,7 @@ def _compliances(materials: list[Material], kernel: Callable[[Response, float], 
 def _spectrum(kernel: FloatArray, response: Response, shape: tuple[int, ...]) -> ComplexArray:
     """Spectrum over a whole period of a kernel, given at non-negative offsets."""
     for axis, sign in enumerate((response.sign_x, response.sign_y)):
-        half = kernel.shape[axis]
-        mirrored = np.flip(np.take(kernel, np.arange(1, shape[axis] - half + 1), axis=axis), axis=axis)
+        offset_count = kernel.shape[axis]
+        mirrored = np.flip(np.take(kernel, np.arange(1, shape[axis] - offset_count + 1), axis=axis), axis=axis)
         kernel = np.concatenate([kernel, sign * mirrored], axis=axis)
     return np.asarray(fft.rfft2(kernel))

@@ -64,6 +64,8 @@ def test_coarse_transfer_matches_fine_transfer() -> None:
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
     fractions, coarse = operator._transfer, operator.coarse._transfer
     load = np.repeat(np.random.default_rng(0).random(8), 2)
-    assert coarse.to_counterbody @ load[::2] == pytest.approx((fractions.to_counterbody @ load).reshape(-1, 2).mean(axis=1))
+    assert coarse.to_counterbody @ load[::2] == pytest.approx(
+        (fractions.to_counterbody @ load).reshape(-1, 2).mean(axis=1)
+    )
     expected = np.repeat(np.random.default_rng(1).random(coarse.to_counterbody.shape[0]), 2)
     assert coarse.to_body @ expected[::2] == pytest.approx((fractions.to_body @ expected).reshape(-1, 2).mean(axis=1))

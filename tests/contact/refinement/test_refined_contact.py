@@ -24,7 +24,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement import refined_contact as module
 from contactstudy.contact.refinement.refined_contact import (
     _axial_shape,
-    _cell_number_y,
+    _choose_cells_y,
     _roller_columns,
     refine_contact,
 )
@@ -205,7 +205,7 @@ def test_modified_result_does_not_change_next_result() -> None:
 @pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
 def test_cell_number_is_least_sufficient_one(accuracy: float, fraction: float) -> None:
     """The error between cells is 0.7 over the square of the number of cells across the contact."""
-    cells = _cell_number_y(fraction, accuracy)
+    cells = _choose_cells_y(fraction, accuracy)
 
     def remaining_error(cells: int) -> float:
         return 0.7 / (cells * fraction) ** 2

@@ -136,7 +136,7 @@ def make_contact(case: Case, peak_pressure: float, **rigid: float) -> Frictional
     resultants = dict.fromkeys(("force_x", "force_y", "moment_z"), 0.0)
     pair = np.stack([empty] * 2)
     tractions = Tractions(
-        traction=pair, slip=pair, sticks=empty > 1, bound=empty, rigid=rigid, resultants=resultants, work=0.0
+        traction=pair, slip=pair, sticks=empty > 1, bound=empty, amplitudes=rigid, resultants=resultants, work=0.0
     )
     return FrictionalContact(contact, tractions, True)
 
@@ -187,8 +187,8 @@ def test_cells_double_until_changes_meet_accuracy(
         rows.append(cells)
         assert (coarse_contact is None) == (len(rows) == 1)
         resultants = contact.tractions.resultants | {"force_x": -full * forces[len(rows) - 1]}
-        rigid = contact.tractions.rigid | {"y": float(len(rows))}
-        return replace(contact, tractions=replace(contact.tractions, rigid=rigid, resultants=resultants))
+        amplitudes = contact.tractions.amplitudes | {"y": float(len(rows))}
+        return replace(contact, tractions=replace(contact.tractions, amplitudes=amplitudes, resultants=resultants))
 
     settled = refine_contact(replace(STEEL_CASE, friction=0.0), 0.05, 1e-6)
     cells = settled.contact.shape.grid.cells_y

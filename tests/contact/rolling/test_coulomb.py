@@ -39,7 +39,7 @@ def problem(
         apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
         bound=bound,
-        rigid=rigid,
+        prescribed_slip=rigid,
         modes=modes,
         resultant_weights=modes,
         resultants=np.zeros(0) if forces is None else forces,
@@ -54,7 +54,7 @@ def check_law(request: CoulombProblem, solution: CoulombSolution) -> None:
     traction_size = np.hypot(*solution.traction)
     assert (traction_size <= request.bound * (1 + 1e-9)).all()
     sticking = traction_size < request.bound * (1 - 1e-9)
-    scale = np.hypot(*request.rigid).max() + np.abs(solution.amplitudes).sum()
+    scale = np.hypot(*request.prescribed_slip).max() + np.abs(solution.amplitudes).sum()
     assert np.hypot(*slip[:, sticking]).max(initial=0.0) <= 1e-6 * scale
     slip_along_traction = (slip * solution.traction).sum(axis=0)[~sticking]
     assert (slip_along_traction >= -1e-6 * scale * request.bound[~sticking]).all()

@@ -121,9 +121,9 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
         value, unit = value_of(baseline, name), LENGTH**length * PRESSURE**pressure
         minimum = 1e-9 * np.abs(value).max() if np.ndim(value) else 1e-9 * FRICTION * LOAD
         assert value_of(variant, name) / unit == pytest.approx(value, rel=1e-6, abs=minimum), name
-    for name, amount in baseline.rigid.items():
+    for name, amount in baseline.amplitudes.items():
         length, pressure = POWERS.get(name, (0, 0) if rolls else (1, 0))
-        assert variant.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
+        assert variant.amplitudes[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
     assert np.array_equal(baseline.sticks, variant.sticks)
     for name in ("bound_error", "slip_error", "force_error"):  # differences of the values above
         assert getattr(variant, name) == pytest.approx(getattr(baseline, name), rel=1e-3, abs=1e-9)
@@ -175,9 +175,10 @@ def test_work_is_traction_times_slip(motion: Rolling) -> None:
         lost = float((computed.traction * computed.slip).sum() * grid.cell_area)
         assert computed.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
         pushed = (
-            computed.rigid["x"] * computed.resultants["force_x"] + computed.rigid["y"] * computed.resultants["force_y"]
+            computed.amplitudes["x"] * computed.resultants["force_x"]
+            + computed.amplitudes["y"] * computed.resultants["force_y"]
         )
-        pushed += computed.rigid["spin"] * computed.resultants["moment_z"]
+        pushed += computed.amplitudes["spin"] * computed.resultants["moment_z"]
         if model == "exact":  # the other work acts on the displacements by the pressure
             assert abs(computed.work - pushed) > 0.2 * pushed
 
@@ -217,7 +218,7 @@ def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(module, "law_violation", record_scale)
     computed = solve_friction(MOTIONS["moment"], "uniform")
-    rigid, grid = computed.tractions.rigid, computed.contact.shape.grid
+    rigid, grid = computed.tractions.amplitudes, computed.contact.shape.grid
     along_x = rigid["x"] - rigid["spin"] * grid.y
     along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
     is_loaded = computed.contact.pressure > 0
