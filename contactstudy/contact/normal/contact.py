@@ -232,7 +232,8 @@ def iterate_contact(
     grid, prescribed, tolerance = shape.grid, shape.prescribed, settings.tolerance
     bodies = [shape.body] if shape.counterbody is None else [shape.body, shape.counterbody.body]
     is_near = any(np.isfinite(body.depth) for body in bodies)  # a reference line
-    is_prescribed = (is_near and prescribed.approach is not None, is_near and prescribed.load_position is None)
+    tilts = prescribed.load_position is None and 0 not in shape.reflections()
+    is_prescribed = (is_near and prescribed.approach is not None, is_near and tilts)
     low, high = grid.x_range
     weights = np.array([1.0, high - low])
     trial_motion, previous_residual = np.zeros(2), np.zeros(2)
