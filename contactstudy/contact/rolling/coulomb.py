@@ -141,7 +141,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             problem, traction, slip, sticks, amplitudes, diagonal=diagonal, accuracy=accuracy
         )
         slip = slip - rigid_slip + problem.rigid_slip(amplitudes)
-        traction, slip, begins_slip = _search_step(problem, traction, slip, sticks, target, amplitudes)
+        traction, slip, begins_slip = _search_step(problem, traction, slip, sticks, target, amplitudes=amplitudes)
         begins_slip = _select_first(begins_slip, change_fraction)
         begins_stick = _select_first(~sticks & ((slip * traction).sum(axis=0) < 0), change_fraction)
         sticks = (sticks & ~begins_slip) | begins_stick
