@@ -20,7 +20,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 import contactstudy as cs
-from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, even_variation
+from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, transform_groups
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1e9
 """Scales, which the dimensionless results do not depend on."""
@@ -60,7 +60,7 @@ SOLVER_ERRORS = {
 def groups(count: int, seed: int) -> dict[str, np.ndarray]:
     """Return the groups of the first points of a Sobol sequence, even in the coordinates of the atlas."""
     unit = qmc.Sobol(len(GROUPS), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
-    low, high = even_variation(np.array([RANGES[name] for name in GROUPS]).T)
+    low, high = transform_groups(np.array([RANGES[name] for name in GROUPS]).T)
     length, distance, crown, tilt, poisson = (low + unit * (high - low)).T
     return dict(zip(GROUPS, (np.exp(length), distance**2, np.exp(crown), tilt, poisson), strict=True))
 
@@ -153,7 +153,7 @@ def with_residuals(table: xr.Dataset) -> xr.Dataset:
         table[name].attrs["scales"] = scales
         table[f"{name}_residual"] = ("point", residuals)
         atlas = AtlasTable(table)
-        local = atlas.local_residual(name, atlas.points, branch, first=1)
+        local = atlas.local_residual(name, atlas.points, branch, omitted_count=1)
         beyond = np.sqrt(np.maximum(residuals**2 - table[name].attrs["solver_error"] ** 2, 0.0))
         table[name].attrs["coverage_factor"] = float(np.quantile(beyond / local, COVERED, method="higher"))
     return table

@@ -97,7 +97,7 @@ def _is_symmetric(solver: ContactSolver) -> bool:
     is_centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= TOLERANCE * length
     offsets = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (
-        case.roller.clearance(side * offsets, np.array([0.0, 1e-2 * length])) for side in (1, -1)
+        case.roller.clearance(sign * offsets, np.array([0.0, 1e-2 * length])) for sign in (1, -1)
     )
     return bool(is_centred) and bool(np.allclose(second_half, first_half, rtol=TOLERANCE, atol=0.0))
 
@@ -109,7 +109,7 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     length = solver.case.contact_length
     errors = np.zeros(2)
     tilt_sizes = np.abs(nodes.tilts)
-    # The loop solves the last of two opposite tilts; the first may be a reflection.
+    # Of two opposite tilts the last is solved; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.normal_load[-1, index], nodes.moment[-1, index]
         position = float(nodes.approaches[-1]), float(nodes.tilts[index])

@@ -435,7 +435,7 @@ def _create_section(stress: xr.Dataset, body: Body, material: ElasticPlastic) ->
     elastic = stresses.reshape(*stresses.shape[:2], -1)
     section = _CrossSection(body=body, material=material, x=x, y=y[descending], z=z, elastic=elastic)
     # A line contact has one column along x, without ends.
-    check_solved_for(stress, body, "stress", only=("body.material",) if section.is_line_contact else ())
+    check_solved_for(stress, body, "stress", compared_names=("body.material",) if section.is_line_contact else ())
     if not section.is_line_contact:
         section.cells  # noqa: B018, rejects positions without cells
     return section, (dims["x"], dims["z"])

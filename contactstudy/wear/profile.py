@@ -64,7 +64,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
-    check_solved_for(worn, case, "worn", only=WORN_ATTRIBUTES)
+    check_solved_for(worn, case, "worn", compared_names=WORN_ATTRIBUTES)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
     distances = worn["distance"].values

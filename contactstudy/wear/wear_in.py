@@ -346,7 +346,7 @@ def _choose_grids(case: Case, grid: Grid | None) -> Iterable[Grid]:
 def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> Start:
     """Start from the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
-    check_solved_for(after, case, "after", only=WORN_ATTRIBUTES)
+    check_solved_for(after, case, "after", compared_names=WORN_ATTRIBUTES)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last_state = after.isel(distance=-1) if "distance" in after.dims else after
