@@ -143,7 +143,7 @@ _PARAMETERS = (
         "approach at mid-length, from first contact without tilt, relative to reference_depth",
         "or `load`",
         consumer=Case,
-        note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
+        note="load and a follow: give `end_distance`; leave out uniform cells and stress points, which scale with a",
     ),
     Parameter("friction", "1", "coefficient of friction", consumer=Case),
     Parameter("profile", "", "roller profile", check=profile_table, fallback={"kind": "cylinder"}),
@@ -186,7 +186,7 @@ _PARAMETERS = (
         "",
         "motion of the roller against the body",
         words=("sliding", "shift", "rolling"),
-        note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
+        note="`sliding`: full sliding; `shift`: one shift from rest; `rolling`: steady; the last two stick and slip",
     ),
     Parameter(
         "longitudinal_creepage",
@@ -195,7 +195,7 @@ _PARAMETERS = (
         "0",
         note="rolling only; or `force_y`",
     ),
-    Parameter("lateral_creepage", "1", "the same along x", "0", note="rolling only; or `force_x`"),
+    Parameter("lateral_creepage", "1", "the same velocity ratio along x", "0", note="rolling only; or `force_x`"),
     Parameter(
         "spin", "rad/m", "angular velocity about z over the rolling speed", "0", note="rolling only; or `moment_z`"
     ),
@@ -227,9 +227,9 @@ _PARAMETERS = (
     Parameter(
         "accuracy",
         "1",
-        "error over the peak to which peak, end pressures and end loads are settled",
+        "largest error of peak, end pressures and end loads, over the peak",
         f"{ACCURACY:g}",
-        note="columns are refined to it; a case with parameters of uniform cells has none",
+        note="the solver refines the columns accordingly; left out with parameters of uniform cells",
     ),
     Parameter("cells_x", "1", "cells per half-width a along x", consumer=choose_grid, note="uniform cells"),
     Parameter("cells_y", "1", "cells per half-width a along y", consumer=choose_grid, note="uniform cells"),

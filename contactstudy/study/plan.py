@@ -62,9 +62,9 @@ def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
     dims, shape, labels = [], [], {}
     for axis in axes:
         columns = {name: [label(entry[name]) for entry in axis] for name in axis[0]}
-        distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
-        dim = distinct[0] if distinct else "_and_".join(columns)
-        if not distinct:
+        distinct_names = [name for name, column in columns.items() if len(set(column)) == len(column)]
+        dim = distinct_names[0] if distinct_names else "_and_".join(columns)
+        if not distinct_names:
             labels[dim] = (dim, list(range(len(axis))))
         for name, column in columns.items():
             labels[name] = (dim, column)
@@ -78,15 +78,15 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> Cube:
     names = dict.fromkeys(name for case in cases for name in case)
     columns = {name: [label(case.get(name)) for case in cases] for name in names}
     steps = {name: {value: step for step, value in enumerate(dict.fromkeys(columns[name]))} for name in names}
-    varying = {name: step_of for name, step_of in steps.items() if len(step_of) > 1}
-    shape = tuple(map(len, varying.values()))
-    complete = not any(None in step_of for step_of in varying.values())
-    if varying and complete and math.prod(shape) <= MAX_CUBE_CELLS * len(cases):
-        multi_index = tuple([step_of[value] for value in columns[name]] for name, step_of in varying.items())
+    steps_of = {name: numbers for name, numbers in steps.items() if len(numbers) > 1}
+    shape = tuple(map(len, steps_of.values()))
+    is_complete = not any(None in numbers for numbers in steps_of.values())
+    if steps_of and is_complete and math.prod(shape) <= MAX_CUBE_CELLS * len(cases):
+        multi_index = tuple([numbers[value] for value in columns[name]] for name, numbers in steps_of.items())
         indices = np.ravel_multi_index(multi_index, shape)
         if len(np.unique(indices)) == len(cases):
-            return Cube(tuple(varying), shape, {name: (name, list(varying[name])) for name in varying}, indices)
-    labels = {"case": ("case", list(range(len(cases))))} | {name: ("case", columns[name]) for name in varying}
+            return Cube(tuple(steps_of), shape, {name: (name, list(steps_of[name])) for name in steps_of}, indices)
+    labels = {"case": ("case", list(range(len(cases))))} | {name: ("case", columns[name]) for name in steps_of}
     return Cube(("case",), (len(cases),), labels, np.arange(len(cases)))
 
 
@@ -213,14 +213,14 @@ class Plan(Sequence[PlannedCase]):
         return np.fromiter(map(hash_fragments, self._fragments()), dtype="S64", count=len(self))
 
     def _classify(self, local: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
-        """Class of each case: cases of a class differ in `local` parameters only, or not at all with a `fixing` one."""
+        """Class of each case: its cases differ in `local` parameters only, with a `fixing` parameter in none."""
         local_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (local, fixing))
 
-        def key(fragments: tuple[str, ...]) -> int:
+        def compute_key(fragments: tuple[str, ...]) -> int:
             ignored = () if any(text.startswith(fixing_starts) for text in fragments) else local_starts
             return hash(tuple(text for text in fragments if text and not text.startswith(ignored)))
 
-        keys = np.fromiter(map(key, self._fragments()), dtype=np.int64, count=len(self))
+        keys = np.fromiter(map(compute_key, self._fragments()), dtype=np.int64, count=len(self))
         return np.asarray(pd.factorize(keys)[0], dtype=np.int64)
 
     @cached_property
