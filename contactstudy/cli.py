@@ -245,10 +245,10 @@ def _verify(options: argparse.Namespace) -> int:
         if group not in shown_groups:
             print(f"\n{group}\n{suite.HEADING}")
         shown_groups.add(group)
-        print(suite.line(check), flush=True)
+        print(suite.format_line(check), flush=True)
 
     verification = suite.run(options.level, show)
-    print(f"\n{suite.summary(verification)}")
+    print(f"\n{suite.format_summary(verification)}")
     _print_written(*suite.write(verification, folder))
     return ALL_OK if verification.passed else SOME_FAILED
 

@@ -293,8 +293,7 @@ def best_profile(
     bounds : mapping of str to tuple of float
         Least and largest value of each parameter; if both are positive, equal steps are equal ratios.
     measure : str or callable
-        A scalar variable of the result of :func:`contactstudy.solve`; or a function of the result that returns a
-        number, or a number and its error.
+        A scalar of the result of :func:`contactstudy.solve`; or a function that returns a number, or number and error.
     accuracy : float
         Accuracy of every contact, see :func:`contactstudy.solve`, and relative error of a measure without an error.
     settings : mapping
@@ -317,8 +316,7 @@ def best_profile(
     Raises
     ------
     InvalidInputError
-        If an argument is out of range, the measure is unknown or infinite throughout the bounds, or no profile within
-        the bounds is valid.
+        If an argument is out of range, the measure is unknown or infinite within the bounds, or no profile is valid.
 
     Warns
     -----

@@ -258,8 +258,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     path : str or Path
         File to write, ending with ``.vtr`` or ``.vtu``.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all fields in
-        the body, or all surfaces if there are none.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all in the body, else all surfaces.
 
     Returns
     -------

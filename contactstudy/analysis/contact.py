@@ -171,8 +171,8 @@ def _replace_at_singular_end(dataset: xr.Dataset, end: str, value: xr.DataArray)
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Return 1 where the contact continues beyond the first or the last x, as in a part of a result, otherwise 0.
 
-    The pressure of a cut contact carries less than the load, and reaches a border of the cells inside the contact's
-    range. The range follows from the inputs of `solve`; without inputs it begins at x = 0.
+    A cut contact carries less than the load, and is loaded at a border of the cells inside the contact's range, which
+    follows from the inputs of `solve`; without inputs it begins at x = 0.
 
     Parameters
     ----------

@@ -250,8 +250,7 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
         error = np.inf
     else:
         if "pressure" not in case:
-            # Without a pressure the samples alone bound the error: at least half of the change from samples twice as
-            # far apart.
+            # Without a pressure the error is at least half of the change from samples twice as far apart.
             error = max(error, 0.5 * abs(value - find_maximum(NEIGHBOURS, stride=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])

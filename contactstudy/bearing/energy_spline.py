@@ -1,8 +1,7 @@
 """Strain energy of a contact over approach and tilt as one smooth function: load, moment and stiffness derive from it.
 
 The energy without tilt follows powers of the approach: its logarithm is a spline in the logarithm of the approach. The
-energy added by a tilt is a tensor product of splines in that logarithm and in the tilt, fitted to energy, load and
-moment together by least squares.
+energy added by a tilt is a tensor product of splines, fitted to energy, load and moment together by least squares.
 """
 
 from __future__ import annotations

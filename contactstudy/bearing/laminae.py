@@ -58,8 +58,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     -------
     Dataset
         Along `x` (middle of each slice, metres from end I of the body): `load_per_length` (N/m), `pressure` (Pa),
-        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m). Their
-        errors are not estimated.
+        `half_width` (m), `deflection` (m), `edge_factor`; the scalars `normal_load` (N), `approach` (m). No errors.
 
     Raises
     ------
@@ -132,8 +131,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     return describe(result, "slice model of ISO/TS 16281")
 
 
-# Power with which a lamina's risk of fatigue grows with load: the life exponent 4 of a line contact times the slope
-# 9/8 of Weibull's distribution
+# Power of the load in a lamina's risk of fatigue: life exponent 4 of a line contact times Weibull's slope 9/8
 LIFE_POWER = 9 / 2
 
 

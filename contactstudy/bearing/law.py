@@ -193,8 +193,7 @@ class ContactLaw:
         approach : float, sequence or DataArray
             Approach at the roller's mid-length, metres, relative to the table's reference.
         tilt : float, sequence or DataArray
-            Radians, positive if the end at larger x is deeper. Two sequences give a table; DataArrays are paired along
-            their common dimensions.
+            Radians, positive if the end at larger x is deeper. Two sequences give a table; DataArrays are broadcast.
 
         Returns
         -------
@@ -327,9 +326,8 @@ class Raceways:
 
     Notes
     -----
-    Load and moment about mid-length are equal in both contacts, without centrifugal force and flange. Approaches
-    and tilts add up to the motion of the outer raceway relative to the inner raceway. The contacts deform an elastic
-    roller independently.
+    Load and moment about mid-length are equal in both contacts, without centrifugal force and flange. Approaches and
+    tilts add up to the relative motion of the raceways. The contacts deform an elastic roller independently.
 
     Examples
     --------

@@ -149,8 +149,7 @@ def contact_law(
     ContactLaw
         Its `table` is a Dataset along `approach` and `tilt`: `normal_load`, `moment`, `strain_energy`,
         `normal_stiffness`, `coupling_stiffness`, `tilting_stiffness`; and `relative_load_error` (over the load) and
-        `relative_moment_error` (over load times length), the sum of the errors of interpolation up to the next nodes,
-        and of discretisation.
+        `relative_moment_error` (over load times length), sums of the errors of interpolation and discretisation.
 
     Raises
     ------

@@ -122,8 +122,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, see :func:`window_remainder`; residual
-        stresses may be added.
+        The six components along y over the whole passage, see :func:`window_remainder`; residual stresses may be added.
     limits : FatigueLimits
         Limits of the material.
 

@@ -72,8 +72,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     Parameters
     ----------
     risk, reference : Dataset
-        Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit; for example the
-        body with free ends and the half-space.
+        Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit.
     exponents : LifeExponents
         Exponents of both risks.
 
@@ -324,8 +323,7 @@ def ioannides_harris(
     ----------
     stress : DataArray
         A measure of the passage along x and z, Pa, at three or more depths and two or more x: for example
-        ``analysis.measure(result, "orthogonal_shear_amplitude")``, ``dang_van(...).dang_van``, or the largest von Mises
-        stress along y.
+        ``analysis.measure(result, "orthogonal_shear_amplitude")``, or ``dang_van(...).dang_van``.
     limit : float
         Limit ``sigma_u`` of the same measure, below which no point fails, Pa.
     exponents : LifeExponents

@@ -225,8 +225,7 @@ def _is_border_critical(case: xr.Dataset, fields: xr.Dataset, variable: str) -> 
 
 
 DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's polynomials: smooth stresses
-# Points per element along either axis. Accuracy: an element has two functions along each axis; with only two points the
-# body would yield between the points
+# Points per element along either axis. Accuracy: with two points, as many as functions, the body yields between them
 POINTS_PER_ELEMENT = 4
 MIN_POINTS = 5  # Minimum number of points along x and z: with fewer, the stress function has no free coefficients
 MAX_DUALITY_GAP = 1e-4  # Relative duality gap of convergence

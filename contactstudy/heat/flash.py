@@ -1,8 +1,7 @@
 """Flash temperature of a solved contact: heat of friction, partition of the heat, and temperature of both surfaces.
 
 The steady temperature of a moving surface is the integral of eq. (601) over the length of spreading s. For uniform heat
-in a cell the integrand has one factor along each axis (docs/explanation/heat_and_wear.md); insulated ends mirror the
-cell along x.
+in a cell the integrand has one factor along each axis (docs/explanation/heat_and_wear.md); insulated ends mirror cells.
 """
 
 from __future__ import annotations
@@ -81,8 +80,7 @@ MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanish
 def spread_nodes(min_width: float, cell_width: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
-    # The integral ends when the heat of all cells has drifted beyond the window; for a source at rest, at 1e8
-    # windows, where the remainder is 1e-8.
+    # The integral ends when all heat has drifted beyond the window; at rest, at 1e8 windows, with a remainder of 1e-8.
     max_spread = 1e8 * window
     if speed:
         max_spread = min((MAX_SPREADS + np.sqrt(MAX_SPREADS**2 + 2 * speed * window)) / speed, max_spread)

@@ -321,8 +321,7 @@ def residual_stress(
     ----------
     stress : Dataset
         A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`. The
-        positions along x and z are the cells' midpoints, also beyond the yielding region. One position along x: a line
-        contact.
+        positions along x and z are cell midpoints, also beyond the yielding region; one along x is a line contact.
     body : Body
         The body, for its elastic constants and free ends.
     material : ElasticPlastic
@@ -330,8 +329,7 @@ def residual_stress(
     passes : int
         Number of passes; fewer if a pass leaves the state unchanged.
     substeps : int
-        Steps from one position along y to the next, between which the elastic stress is linear. The error falls with
-        their number.
+        Steps between neighbouring positions along y, with linear elastic stress. The error falls with their number.
     tolerance : float
         Accuracy of the stress at each position, over the yield stress.
 
@@ -342,8 +340,7 @@ def residual_stress(
         added to the contact's stresses; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
         `equivalent_plastic_strain`, accumulated; `plastic_flow`, the largest equivalent plastic strain of the pass;
         `residual_displacement_z` and `residual_displacement_y` of the top (m, relative to the depth; of a line contact
-        relative to the last depth); `converged`, whether every pass reached the tolerance. The contact is that of
-        the elastic body.
+        relative to the last depth); `converged`, whether every pass reached the tolerance. The contact remains elastic.
 
     Raises
     ------

@@ -430,8 +430,8 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     dataset : Dataset
         From :func:`contactstudy.open_study`.
     selection : mapping, optional
-        Values of swept parameters. Of parameters without an axis, line or panel the figures show the first value with
-        most solved cases, and list it in the title.
+        Values of swept parameters. The title lists the values of parameters without an axis, line or panel; default:
+        the first with most solved cases.
 
     Returns
     -------

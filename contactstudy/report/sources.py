@@ -61,8 +61,7 @@ def citations(dataset: xr.Dataset) -> Citations:
     Returns
     -------
     Citations
-        This package first. For a study, and for a case selected from it, the sources of all cases of the study; without
-        the inputs, the sources that the variables imply.
+        This package first. For a study or one of its cases the sources of all cases; without inputs, of the variables.
 
     Examples
     --------

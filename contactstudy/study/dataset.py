@@ -57,9 +57,8 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
         * every number of the cases, in memory, NaN where it is absent;
         * surfaces and stresses, read on demand, along ``x_over_a`` (distance from the free end over the half-width),
           ``y_over_a`` (``y_field_over_a`` of separate stress points) and ``z_over_a``; ``x``, ``y`` and ``z`` are each
-          case's metres. Pressure and traction are averaged over the common cells, so that loads remain, other
-          variables are interpolated. With ``cells="original"`` different positions are padded with NaN along
-          ``x_index``, ``x_field_index``, ...
+          case's metres. Pressure and traction are averaged over the common cells, other variables are interpolated.
+          With ``cells="original"`` different positions are padded with NaN along ``x_index``, ``x_field_index``, ...
 
     Raises
     ------

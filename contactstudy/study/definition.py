@@ -53,8 +53,7 @@ class Study:
     cases : list of mappings
         Explicit cases, each added to `base`, in addition to the product.
     exclude : list of mappings
-        Combinations to leave out: every named parameter has the value, or one of the values. A profile is named by its
-        label.
+        Combinations to leave out: every named parameter has the value, or one of the values; a profile has its label.
     level : {"summary", "surface", "fields"}
         Retained results: numbers; also pressure, gap, ...; also stresses.
     description : str

@@ -1,7 +1,6 @@
 """Plan of a study: its cases in a stable order, their identities, groups and positions among its dimensions.
 
-Properties are computed at first use: a million cases have identities and groups as arrays; the parameters of a case
-follow from its number.
+Properties are computed at first use; identities and groups are arrays, and a case's parameters follow from its number.
 """
 
 from __future__ import annotations

@@ -362,8 +362,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
-            # A film starts from the film of the next lower speed, whose relative errors bound those of a thicker film:
-            # solve all cases of a group or none.
+            # A film starts from the film of the next lower speed: solve all cases of a group or none.
             films = sorted(group, key=lambda index: abs(plan.values(index)["entrainment_speed"]))
             unsolved_groups.append([] if unsolved.isdisjoint(group) else films)
         else:

@@ -30,9 +30,9 @@ from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, Check, Curve, Reference, load_reference
 
 # Moes' numbers M, L: extrapolated central and least film H of Barus oil of constant density; two programs agree to
-# 0.2 %. Below M = 100 an inlet cut at four half-widths reproduces the table, a settled one gives thicker films.
+# 0.2 %. Below M = 100 an inlet of four half-widths reproduces the table; a converged inlet gives thicker films.
 TABLE_INLET = 4.0  # below M = 100, over the half-width
-TABLE = {
+FILM_TABLE = {
     (2.0, 5.0): (4.451, 3.470),
     (20.0, 10.0): (5.270, 3.968),
     (200.0, 10.0): (4.009, 2.990),
@@ -47,8 +47,8 @@ BARUS_OIL: dict[str, Any] = {"viscosity_law": "barus", "density_law": "constant"
 
 def line_checks(*, full: bool) -> Iterator[Check]:
     """Table, formula, rolling moment and limits of line contacts."""
-    for (load, lubricant), films in list(TABLE.items())[: None if full else 3]:
-        # The settled inlet shows how far the table's inlet is too short.
+    for (load, lubricant), films in list(FILM_TABLE.items())[: None if full else 3]:
+        # The converged inlet shows the error by the table's short inlet.
         inlets = {TABLE_INLET: 5e-3} | ({None: 0.05} if full else {}) if load < 100 else {None: 5e-3}
         for inlet, tolerance in inlets.items():
             line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
@@ -117,9 +117,9 @@ def coarse_film(name: str) -> FilmCase:
 def finite_element_checks(name: str) -> Iterator[Check]:
     """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
-    lubricated = coarse_film(name)
-    level_film = film_on_level(lubricated, lubricated.coarsest_level, SETTINGS)
-    solution = continue_solution(lubricated, level_film, SETTINGS).solution
+    film_case = coarse_film(name)
+    level_film = film_on_level(film_case, film_case.coarsest_level, SETTINGS)
+    solution = continue_solution(film_case, level_film, SETTINGS).solution
     fields = {"film": solution.film, "pressure": solution.fluid_pressure}
     # The cells of both solutions differ only by rounding.
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)
