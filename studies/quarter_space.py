@@ -341,13 +341,13 @@ def _edge_checks(ball: Indenter) -> list[Check]:
     nodes, weights = np.polynomial.legendre.leggauss(8)
     edges = a * np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 9.0, 18.0, 40.0])
     positions = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (nodes + 1)).ravel()
-    shares = (0.5 * np.diff(edges)[:, None] * weights).ravel()
-    plane_stress = (
+    areas = (0.5 * np.diff(edges)[:, None] * weights).ravel()
+    normal_stress = (
         cs.stress_field(case.body, pressure, x=positions, y=positions, z=[a], inside_cells=pressure)["sigma_zz"]
         .isel(z=0)
         .values
     )
-    resultant = -2 * float(shares @ plane_stress @ shares)
+    resultant = -2 * float(areas @ normal_stress @ areas)
     stress = cs.stress_field(
         case.body,
         pressure,

@@ -165,7 +165,7 @@ def refine_study(study: cs.Study) -> cs.Study:
 
 def main() -> None:
     """Evaluate and draw the study, or check its cells."""
-    parser = argparse.ArgumentParser(description="Errors of the half-space and of quick fixes for free ends.")
+    parser = argparse.ArgumentParser(description="Errors of the half-space and of approximate models of free ends.")
     parser.add_argument("folder", type=Path, nargs="?", default=Path("results/regime_map"))
     parser.add_argument("--finer", action="store_true", help="solve some cases more accurately and compare")
     options = parser.parse_args()

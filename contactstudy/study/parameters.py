@@ -116,8 +116,8 @@ _PARAMETERS = (
         "model of the free ends",
         words=MODELS,
         label="model of the free ends",
-        note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
-        "only), the published scheme with one pair of images",
+        note="`exact`; for comparison `mirror` and `mirror-factor`, approximate models in use, and `single-mirror` (two "
+        "ends only), the published scheme with one pair of images",
     ),
     Parameter("young", "Pa", "Young's modulus of the body", "required", label="Young's modulus"),
     Parameter("poisson", "1", "Poisson's ratio of the body", "required", label="Poisson's ratio"),
