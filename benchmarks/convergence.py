@@ -31,7 +31,7 @@ from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.plots.style import line_styles
 from contactstudy.verification import closed_forms
-from contactstudy.verification.free_ends import pressure_of
+from contactstudy.verification.free_ends import create_pressure
 from contactstudy.verification.problems import (
     LINE_LOAD,
     LOAD_CASES,
@@ -137,7 +137,7 @@ def stress_grid() -> Table:
     cells = (8, 16, 32, 64)
     errors = []
     for count in cells:
-        load = pressure_of(case, count)
+        load = create_pressure(case, count)
         stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
         difference = np.abs(components(stress) - expected)
         errors.append((float(difference.max()), float(difference.mean())))

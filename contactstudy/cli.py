@@ -304,7 +304,7 @@ def _reason_lines(states: States, *statuses: str, identities: bool = True) -> It
 
 
 def _state_lines(states: States, *, all_cases: bool) -> Iterator[str]:
-    """Lines of counts, of the cases that need attention, or of every case, and on the remaining cases."""
+    """Lines on the status of cases: counts, cases that need attention (or all cases), and a forecast of the rest."""
     for status, count in states.counts.items():
         yield f"  {count} {status}"
     if all_cases:
@@ -336,16 +336,16 @@ def _forecast_lines(states: States) -> Iterator[str]:
         yield f"  {duplicates} duplicates, solved once"
     missing, seconds = len(set(states.indices("missing")) & set(unique)), states.numbers("seconds")
     seconds_of_solved = seconds[seconds >= 0]
-    solved = len(seconds_of_solved)
-    if solved:
+    solved_count = len(seconds_of_solved)
+    if solved_count:
         size = sum(path.stat().st_size for path in states.results.paths)
-        total = format_bytes(size / solved * len(plan.unique))
-        yield f"files: about {total} at level {plan.level}, from {solved} solved cases"
+        total = format_bytes(size / solved_count * len(plan.unique))
+        yield f"files: about {total} at level {plan.level}, from {solved_count} solved cases"
     else:
         yield f"files: about {format_bytes(plan.size)} at level {plan.level} before compression"
-    if missing and solved:
+    if missing and solved_count:
         duration = format_duration(float(seconds_of_solved.mean()) * missing)
-        yield f"time: about {duration} of one core for {missing} cases, from {solved} solved ones"
+        yield f"time: about {duration} of one core for {missing} cases, from {solved_count} solved cases"
     elif missing:
         yield f"time: not estimated for {missing} cases; `plan --sample N` solves N of them for an estimate"
 

@@ -29,7 +29,7 @@ LOGGER = logging.getLogger(__name__)
 # A variable of the result, or a function of the result that returns a number, or a number and its error
 Measure = str | Callable[[xr.Dataset], object]
 MIN_DIFFERENCE = 1e-9  # Fraction of a parameter's range below which two designs are equal
-SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: with one parameter; factor on powers of two with more
+SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter; of more, times powers of two
 # Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
 OPTIMUM_TOLERANCE, SIMPLEX_SIZE = 0.01, 0.15
 FLAT_RANGE_TOLERANCE = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
@@ -69,7 +69,7 @@ class Evaluations:
 
     cases: list[Case]
     profile: Callable[..., Profile]
-    ranges: dict[str, tuple[float, float]]  # low, if positive with equal ratios for equal steps of the fraction; high
+    ranges: dict[str, tuple[float, float]]  # low, high; if low is positive, fractions divide the logarithm
     measure: Measure
     accuracy: float  # of the contacts; relative error of a measure without an error
     settings: Mapping[str, object]  # further arguments of solve

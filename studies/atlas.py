@@ -171,7 +171,9 @@ def leave_one_out(atlas: AtlasTable, name: str) -> tuple[np.ndarray, np.ndarray]
 def compute_leave_one_out_residuals(points: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """Difference of each sample from the cubic radial functions and parabola through the others (Rippa, 1999)."""
     count = len(points)
-    monomials = [points[:, list(factors)].prod(axis=1) for degree in range(3) for factors in factors_of(points, degree)]
+    monomials = [
+        points[:, list(factors)].prod(axis=1) for degree in range(3) for factors in monomial_indices(points, degree)
+    ]
     matrix = np.zeros((count + len(monomials),) * 2)
     matrix[:count, :count] = cdist(points, points) ** 3
     matrix[:count, count:] = np.transpose(monomials)
@@ -180,8 +182,8 @@ def compute_leave_one_out_residuals(points: np.ndarray, samples: np.ndarray) -> 
     return np.asarray(inverse @ samples / inverse.diagonal())
 
 
-def factors_of(points: np.ndarray, degree: int) -> Iterator[tuple[int, ...]]:
-    """Coordinates whose product is a monomial of the degree."""
+def monomial_indices(points: np.ndarray, degree: int) -> Iterator[tuple[int, ...]]:
+    """Yield the indices of the coordinates in each monomial of the degree."""
     return itertools.combinations_with_replacement(range(points.shape[1]), degree)
 
 

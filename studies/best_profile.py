@@ -80,7 +80,7 @@ class Task:
         results = [cs.solve(case, accuracy=self.accuracy, stresses=False) for case in self.cases(delta, body)]
         peaks = [scale_pressure(result) for result in results]
         max_peak, error = max((float(peak), float(error)) for peak, error in peaks)
-        # Another case may be the worst within its error.
+        # Within the errors another case may be the worst.
         return max_peak, max(error, *(float(peak) + float(error) - max_peak for peak, error in peaks))
 
 
@@ -146,7 +146,7 @@ def compare_designs(task: Task) -> xr.Dataset:
     reference = result.sel(design="free ends")
     life = cs.fatigue.relative_life(result, reference.drop_vars("design"))
     result = result.assign(life.to_dataset().reset_coords("relative_life_error").data_vars)
-    # A life over itself is 1.
+    # The relative life of the reference is exactly 1.
     result["relative_life_error"] = result["relative_life_error"].where(result["design"] != "free ends", 0.0)
     result["relative_life"].attrs["long_name"] = "life over that of the design for free ends"
     result.attrs = {"Conventions": "CF-1.11", "title": "best crown of a roller between free ends"}

@@ -70,7 +70,7 @@ def solve_all(task: Task) -> xr.Dataset:
                 case = task.case(pressure, crown, model)
                 try:
                     film = cs.solve_film(case, accuracy=task.accuracy)
-                except cs.FilmError:  # closed at the ends
+                except cs.FilmError:  # no film at the ends
                     film = xr.Dataset()
                 dry_contact = cs.solve(case, accuracy=0.05, stresses=False)
                 values = {
@@ -115,15 +115,15 @@ def format_table(films: xr.Dataset) -> str:
     ]
     for pressure in films["max_pressure"].values:
         for model in films["model"].values:
-            case, best = (data.sel(max_pressure=pressure, model=model) for data in (films, choice))
+            case, choices = (data.sel(max_pressure=pressure, model=model) for data in (films, choice))
             design = case.sel(crown=1.0)
             ratio = float(design["end_film_ratio"])
             lines.append(
                 f"| {1e-9 * pressure:g} | {model} | {ratio:.3f} ± {float(design['end_film_ratio_error']):.3f} "
                 f"| {float(design['slice_ratio']):.2f} | {FULL_FILM / ratio:.1f} "
-                f"| {float(best['crown_film']):g}, {float(best['crown_pressure']):g} "
-                f"| {100 * float(best['film_loss']):.1f} ± {100 * float(best['film_loss_error']):.1f} % "
-                f"| {100 * float(best['pressure_gain']):.1f} % |"
+                f"| {float(choices['crown_film']):g}, {float(choices['crown_pressure']):g} "
+                f"| {100 * float(choices['film_loss']):.1f} ± {100 * float(choices['film_loss_error']):.1f} % "
+                f"| {100 * float(choices['pressure_gain']):.1f} % |"
             )
     return "\n".join(lines)
 

@@ -117,7 +117,7 @@ def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0
     a = 2 * PRESSURE * RADIUS / material.plane_strain_modulus
     shape = cs.Roller(radius=RADIUS, length=length * a, profile=cs.profiles.Cylinder(edge_radius * a))
     load = length * a * np.pi / 2 * a * PRESSURE
-    # The stress is largest under the peak where the edge radius begins, which is narrow.
+    # The stress is largest under the narrow pressure peak where the edge radius begins.
     x, z = tuple(edge_radius + np.linspace(-0.2, 0.2, 33)), tuple(np.linspace(0.0, 0.15, 16))
     span = 0.5 * length * a
     return Indenter(

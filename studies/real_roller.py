@@ -29,7 +29,7 @@ from contactstudy.bodies import Body
 
 RADIUS, LENGTH, PRESSURE = 5e-3, 10e-3, 1.5e9
 RACEWAYS = (14e-3, 10e-3)
-STEEL, HALF_STIFF = cs.Material(210e9, 0.3), cs.Material(105e9, 0.3)
+STEEL, SOFT_STEEL = cs.Material(210e9, 0.3), cs.Material(105e9, 0.3)
 MODULUS = 0.5 * STEEL.plane_strain_modulus
 HALF_WIDTH = 2 * PRESSURE * RADIUS / MODULUS
 DESIGN = {"radius": RADIUS, "modulus": MODULUS}
@@ -61,7 +61,7 @@ PRESSURES = (
 def create_case(profile: cs.profiles.Profile, model: str, raceway: float, length: float = LENGTH) -> cs.Case:
     """Case of a profile and a model, all with the same Hertz contact; lengths in metres."""
     is_rigid = model == "finite raceway, rigid roller"
-    material = HALF_STIFF if is_rigid else STEEL
+    material = SOFT_STEEL if is_rigid else STEEL
     if model == "half-spaces":
         body: Body = cs.HalfSpace(material=material)
     else:

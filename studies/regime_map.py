@@ -32,7 +32,7 @@ MODELS = {
     "single mirror": {"body": "finite-length", "model": "single-mirror"},
     "quarter space": {"body": "quarter-space", "model": "exact"},
 }
-"""Words of the study for each model, by its title."""
+"""Parameters of the study that select each model, by the model's title."""
 
 QUANTITIES = {
     "peak_pressure_first": "largest pressure",
@@ -130,11 +130,9 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
             magnitude = np.ma.masked_where(np.isnan(panel.values), np.minimum(abs(panel.values), 0.99 * bands[-1]))
             mesh = ax.pcolormesh(magnitude, cmap=colours, norm=BoundaryNorm(bands, colours.N))
             # Lines that follow the cells' borders: the values repeated on a much finer grid.
-            fine = np.repeat(np.repeat(magnitude, 40, axis=0), 40, axis=1)
-            down, across = ((np.arange(n) + 0.5) / 40 for n in fine.shape)
-            ax.contour(
-                across, down, fine, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6
-            )
+            fine_image = np.repeat(np.repeat(magnitude, 40, axis=0), 40, axis=1)
+            y, x = ((np.arange(size) + 0.5) / 40 for size in fine_image.shape)
+            ax.contour(x, y, fine_image, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6)
             for (i, j), value in np.ndenumerate(panel.values):
                 if not np.isnan(value):
                     colour = "white" if abs(value) > 5 else "black"
@@ -176,8 +174,8 @@ def main() -> None:
         cs.run_study(refine_study(cs.Study.from_toml(Path(__file__).with_suffix(".toml"))), folder / "finer", workers=2)
         change = abs(compute_errors(select_quantities(cs.open_study(folder / "finer"))) - error)
         for model in MODELS:
-            largest = change.where(np.isfinite(change)).sel(approximation=model).max()
-            print(f"{model}: errors change by at most", *(f"{float(largest[n]):.2f} % ({n})" for n in QUANTITIES))
+            max_change = change.where(np.isfinite(change)).sel(approximation=model).max()
+            print(f"{model}: errors change by at most", *(f"{float(max_change[n]):.2f} % ({n})" for n in QUANTITIES))
         return
     error.to_netcdf(folder / "errors.nc")
     find_limits(error).to_dataframe().to_csv(folder / "limits.csv")

@@ -132,7 +132,7 @@ def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
         return np.nan, np.nan
     dx, dy = (cell_size(result["pressure"], axis) for axis in "xy")
     resultant = float((result["pressure"] * dx * dy).sum())
-    if not resultant > (1 - MISSING_LOAD) * float(result["normal_load"]):  # also of an unknown load
+    if not resultant > (1 - MISSING_LOAD) * float(result["normal_load"]):  # also true of NaN
         return np.nan, np.nan
     accuracy = float(attribute(result, INPUTS_ATTRIBUTE).get("settings", {}).get("accuracy", np.nan))
     errors = []

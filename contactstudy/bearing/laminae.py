@@ -245,8 +245,8 @@ MODELS = ("slices", "slices with riser", "half-space", "free ends")  # Models of
 RACEWAYS = ("inner", "outer")
 
 TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other raceway LIFE_POWER
-# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: an allowance for edge stress,
-# which the lamina model contains
+# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings (from secondary sources): allowance for edge
+# stress, which the lamina model contains
 RATING_REDUCTION = 0.83
 
 

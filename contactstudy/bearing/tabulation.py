@@ -73,7 +73,7 @@ def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray
     LOGGER.info(
         "%d contacts at %d approaches and %d tilts", len(columns) * approaches.size, approaches.size, len(columns)
     )
-    # From the least tilt on, the first guesses at each tilt are the loads at the tilt before.
+    # The first guesses at each tilt are the loads at the preceding tilt; the first tilt is the least.
     for index in sorted(columns, key=lambda index: abs(index - start_column)):
         neighbour = index + int(np.sign(start_column - index))
         for row in range(approaches.size - 1, -1, -1):

@@ -129,7 +129,7 @@ class StudyFigure:
         triangle = TRIANGLE | {"line_width": 3}
         self.figure.scatter("x", "v", source=self._case_triangles, line_color="color", **triangle)
         self.figure.y_range = Range1d(0, 1)
-        self._ticker = self.figure.xaxis[0].ticker  # for numbers
+        self._ticker = self.figure.xaxis[0].ticker  # of numeric axes
 
     def show(
         self,

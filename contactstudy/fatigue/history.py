@@ -98,7 +98,7 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     0.25
     """
 
-    def magnitudes(history: Array) -> dict[str, Array]:
+    def find_magnitudes(history: Array) -> dict[str, Array]:
         weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
         magnitude = np.sqrt((history[:, :-1] ** 2) @ weights)
         return {"border": np.maximum(magnitude[:, 0], magnitude[:, -1]), "largest": magnitude.max(axis=1)}
@@ -107,7 +107,7 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     rolling_dim = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
     sorted_stress = stress.sortby(rolling_dim) if rolling_dim in stress.indexes else stress
-    stresses = map_histories(magnitudes, sorted_stress, ("border", "largest"))
+    stresses = map_histories(find_magnitudes, sorted_stress, ("border", "largest"))
     remainder = (stresses["border"] / stresses["largest"]).where(stresses["largest"] != 0, 0.0)
     return name_array("window_remainder", remainder)
 

@@ -353,7 +353,7 @@ def ioannides_harris(
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    if stress.attrs.get("units") != "1":  # a utilisation has no unit
+    if stress.attrs.get("units") != "1":  # a utilisation is dimensionless
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
     if "y" in axis_dimensions(stress):

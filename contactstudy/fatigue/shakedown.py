@@ -72,7 +72,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
 
     Examples
     --------
-    A residual tension of 1 halves a pure stress along rolling from 0 to -2.
+    A residual tension of 1 halves the least yield stress of a uniaxial stress between 0 and -2.
 
     >>> passage = xr.DataArray([-1.0, -2.0, -1.0], dims="y", coords={"y": [-1.0, 0.0, 1.0]})
     >>> result = shakedown(xr.Dataset({name: passage * (name == "sigma_yy") for name in STRESSES}))

@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DistanceCase = tuple[float, xr.Dataset]  # e/a and the case
-LoadCase = Callable[[xr.Dataset], xr.Dataset]  # Takes the part of a study with one case; returns the case
+LoadCase = Callable[[xr.Dataset], xr.Dataset]  # Function that returns the case of a selection of a study
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
-TITLE_WIDTH = 60  # letters in a line of the title
+TITLE_WIDTH = 60  # Maximum number of letters in a line of the title
 LEVEL_TOLERANCE = 0.1  # Largest relative deviation from the pressure at mid-length of a level curve
 
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")  # Default quantities
@@ -48,7 +48,7 @@ OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "lines
 
 ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
-LEGEND_COLUMN = 22  # letters of a name in the legend next to the axes
+LEGEND_COLUMN = 22  # Maximum number of letters of a name in a legend beside the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
 
@@ -300,7 +300,7 @@ def plot_edge_effect(
     selection : mapping, optional
         Values of other swept parameters; default: the first.
     load : callable
-        Takes the part of a study with one case, returns the case with its surfaces; default: reads the Dataset.
+        Returns the case of a selection of the study, with its surfaces; default: reads the Dataset.
 
     Returns
     -------

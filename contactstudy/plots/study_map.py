@@ -69,7 +69,7 @@ def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
 
 
 STATES = ("failed", "skipped", "excluded", "missing")  # States of cases without a result
-TICK_WIDTH = 18  # letters of a name at an axis
+TICK_WIDTH = 18  # Maximum number of letters of a name at an axis
 MAX_CELL_LABELS = 80  # cells up to which every cell has its value as text
 
 

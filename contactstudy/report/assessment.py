@@ -210,7 +210,7 @@ def _assess_profile(profile: Mapping[str, Any]) -> Answer:
     if cutoff is None:
         return CAUTION, (
             "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
-            "a cutoff on which the peak does not depend"
+            "a cutoff such that the peak hardly depends on it"
         )
     return YES, f"the cut-off is {format_quantity(cutoff, 'm')}; a second cut-off shows its influence on the peak"
 

@@ -119,7 +119,7 @@ def html(
         study = attribute(source, RUN_ATTRIBUTE).get("study", "")
         title = title or (f"Study {study}, case {path.stem}" if study else path.stem)
     if selection:
-        raise InvalidInputError("selection", dict(selection), "left out: the report of one case shows that case")
+        raise InvalidInputError("selection", dict(selection), "absent for the report of a single case")
     result = single_case(source)
     case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
     context = {
@@ -326,7 +326,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept_names: list[str]) -> list
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
         if isinstance(parameters.get(name), dict) and value == label(parameters[name]):
-            value = parameters[name]  # a table without a name: its values
+            value = parameters[name]  # the text of an unnamed table lists its values
         texts.append("" if value is None else format_value(name, value))
     return texts
 
@@ -352,7 +352,7 @@ def _format_number(table: Summary, name: str) -> str:
     """Text of a number with its error; empty for a number of a singular end at a regular end."""
     end = name.rpartition("_")[2]
     if name.startswith("peak_von_mises") and "peak_von_mises" in table and np.isinf(table["peak_von_mises"].value):
-        return SINGULAR  # and without a position
+        return SINGULAR  # omit the position
     if name not in table or (name in SINGULAR_NUMBERS and f"end_intensity_{end}" not in table):
         return ""
     number = table[name]

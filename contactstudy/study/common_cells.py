@@ -85,7 +85,7 @@ def centre_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
         width = high - low
         is_centre = np.abs(centres_of(edges) - point).min() < END_WIDTH * (edges[-1] - edges[0])
         spacing = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point).min(initial=np.inf)
-        # A neighbour in the same cell, or at its edge, moves the cell's edges.
+        # Two points in one cell, or at its edge, move the cell's edges.
         is_alone = spacing > 0.5 * width * (1 + SPACING_TOLERANCE)
         if (is_centre and is_alone) or not edges[0] < point < edges[-1]:
             continue

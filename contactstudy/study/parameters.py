@@ -66,10 +66,10 @@ class Parameter(NamedTuple):
     units: str  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
-    check: Callable[[str, object], Any] = check_number  # from name and value to the value for identities, or raises
+    check: Callable[[str, object], Any] = check_number  # (name, value): returns the value for identities, or raises
     words: tuple[str, ...] = ()  # allowed words; the first is the default unless `absent` has another meaning
     consumer: Callable[..., Any] | None = None  # function with a keyword of this name, whose default is the default
-    fallback: Any = None  # default without a consumer; None: required or optional
+    fallback: Any = None  # default of a parameter without a consumer; None: no default
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: a result's long name, or `name`
 
@@ -116,7 +116,7 @@ _PARAMETERS = (
         "model of the free ends",
         words=MODELS,
         label="model of the free ends",
-        note="`exact`; for comparison `mirror` and `mirror-factor`, approximate models in use, and `single-mirror` (two "
+        note="`exact`; for comparison `mirror` and `mirror-factor`, usual approximations, and `single-mirror` (two "
         "ends only), the published scheme with one pair of images",
     ),
     Parameter("young", "Pa", "Young's modulus of the body", "required", label="Young's modulus"),
@@ -143,7 +143,7 @@ _PARAMETERS = (
         "approach at mid-length, from first contact without tilt, relative to reference_depth",
         "or `load`",
         consumer=Case,
-        note="load and a follow: give `end_distance`; leave out uniform cells and stress points, which scale with a",
+        note="determines load and a: give `end_distance`, but no uniform cells or stress points, which scale with a",
     ),
     Parameter("friction", "1", "coefficient of friction", consumer=Case),
     Parameter("profile", "", "roller profile", check=profile_table, fallback={"kind": "cylinder"}),
@@ -238,7 +238,7 @@ _PARAMETERS = (
         "1",
         "half-width of the window in y over a",
         consumer=choose_grid,
-        note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
+        note="for uniform cells; a default window grows with the contact, a given window does not",
     ),
     Parameter(
         "margin",

@@ -41,7 +41,7 @@ LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of t
     {"tilt", "load_offset", "profile", "body_edge", "accuracy", "tolerance", "stresses", *GROUPED_PARAMETERS}
 )
 
-Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the parameters of each step
+Axis = tuple[dict[str, Any], ...]  # One factor of a study's product of parameters: the parameters of each step
 
 
 @dataclass(frozen=True)
@@ -189,21 +189,21 @@ class Plan(Sequence[PlannedCase]):
         return table.reshape((*self.cube.shape, *values.shape[1:]))
 
     def _fragments(self) -> Iterator[tuple[str, ...]]:
-        """Parts of each case's canonical JSON, sorted by name; the part of a default is empty."""
-        product = self.chosen[self.chosen < self.products]
+        """Parts of each case's canonical JSON, sorted by name; a default has an empty part."""
+        product_indices = self.chosen[self.chosen < self.products]
         names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
         for name, value in add_default_accuracy({**self.base, **dict.fromkeys(names)}).items():
             if name not in names:
                 columns[name] = repeat(identity_fragment(name, value))
-        steps = np.unravel_index(product, self.shape) if self.shape else ()
+        steps = np.unravel_index(product_indices, self.shape) if self.shape else ()
         for axis, column in zip(self.axes, steps, strict=True):
             for name in axis[0]:
                 table = [identity_fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
-        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product.size)
-        for product_index in self.chosen[len(product) :]:
-            values = add_default_accuracy({**self.base, **self.explicit[product_index - self.products]})
+        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product_indices.size)
+        for index in self.chosen[product_indices.size :]:
+            values = add_default_accuracy({**self.base, **self.explicit[index - self.products]})
             yield tuple(identity_fragment(name, values[name]) for name in sorted(values))
 
     @cached_property
@@ -211,12 +211,12 @@ class Plan(Sequence[PlannedCase]):
         """Identities of the cases."""
         return np.fromiter(map(hash_fragments, self._fragments()), dtype="S64", count=len(self))
 
-    def _classify(self, local: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
-        """Class of each case: its cases differ in `local` parameters only, with a `fixing` parameter in none."""
-        local_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (local, fixing))
+    def _classify(self, varying: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
+        """Class of each case: `varying` parameters may differ in a class, but not with a `fixing` parameter."""
+        varying_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (varying, fixing))
 
         def compute_key(fragments: tuple[str, ...]) -> int:
-            ignored = () if any(text.startswith(fixing_starts) for text in fragments) else local_starts
+            ignored = () if any(text.startswith(fixing_starts) for text in fragments) else varying_starts
             return hash(tuple(text for text in fragments if text and not text.startswith(ignored)))
 
         keys = np.fromiter(map(compute_key, self._fragments()), dtype=np.int64, count=len(self))

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class RunSettings:
     """Times and sizes of a run; results depend on none of them."""
 
-    task_seconds: float = 10.0  # longer tasks need fewer messages, shorter tasks balance better
-    save_seconds: float = 15.0  # time between batches of a worker, the loss by a killed worker
+    task_seconds: float = 10.0  # duration of a task: longer ones need fewer messages, shorter ones balance better
+    save_seconds: float = 15.0  # time between batches of a worker, at most lost if the worker is killed
     compact_seconds: float = 20.0  # time after which a run joins small batches again
     poll_seconds: float = 0.5  # time between two checks for new and lost workers
     start_seconds: float = 60.0  # longest wait for a scheduler's answer, or the start of a worker

@@ -155,7 +155,7 @@ def ellipse_checks() -> Iterator[Check]:
     root = float(np.sqrt(2 * viscosity * speed / (modulus * radius)))  # sqrt(2 U)
     for load, lubricant, ratio in ((20.0, 5.0, 1.0), (100.0, 10.0, 0.3)):
         force, crown_radius = load * modulus * radius**2 * root**1.5, radius / ratio
-        # The roller exceeds the contact along its axis, 2 b, by the length over which the film forms.
+        # The roller is longer than the contact, 2 b, by the length over which the film forms.
         half_length = float(
             np.cbrt(3 * force * np.sqrt(radius * crown_radius) / modulus) * (crown_radius / radius) ** 0.25
         )

@@ -66,7 +66,7 @@ def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], dist
 def edge_load_checks() -> Iterator[Check]:
     """Displacement under a point load on the edge."""
     for poisson in (0.0, 0.3, 0.5):
-        # A cell has a fortieth of the distance, and the error is proportional to it: two distances give the limit.
+        # The error is proportional to the cell's size over the distance: two distances give the limit.
         grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
@@ -225,7 +225,7 @@ CELLS_Y, FINER_CELLS_Y = 128, {"wedge_sliding": 256}
 CONTACT_CELLS = 16  # Cells per half-width along x in contacts
 
 
-def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
+def create_pressure(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
     """Load of a case on cells: along x a quarter of the number along y, but at least 32."""
     cells_x = max(32, round(0.25 * cells_y * case.length))
     return on_cells(lambda x, y: case.pressure(x[:, 0], y[0]), (0, case.length), (-1, 1), (cells_x, cells_y))
@@ -236,7 +236,7 @@ def stress_checks(name: str) -> Iterator[Check]:
     case, stored = LOAD_CASES[name], load_reference(STRESS_FILE, name)
     points: dict[str, Any] = {axis: stored[axis].values.astype(float) for axis in "xyz"}
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    load = pressure_of(case, FINER_CELLS_Y.get(name, CELLS_Y))
+    load = create_pressure(case, FINER_CELLS_Y.get(name, CELLS_Y))
     stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
     computed, expected = components(stress), components(stored.transpose("x", "y", "z"))
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"

@@ -17,7 +17,7 @@ from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_hal
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, Check, Curve, Reference, load_reference
 
 STIFF = Material(1000.0, 0.3)  # Young's modulus is a thousand times the peak pressure of the contacts
-# Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up
+# Allowed differences of residual stress, and of shear summed over depth. Above the limit errors accumulate
 TOLERANCES = {
     "settling": (0.06, 0.03),
     "settling_sliding": (0.06, 0.05),

@@ -161,10 +161,10 @@ def ellipse_gap(along_x: float, along_y: float, load: float, solid: Material, ce
 
 
 def rolling_ellipse(
-    along_x: float, along_y: float, load: float, of: Material, friction: float, motion: Rolling, cells: tuple[int, int]
+    half_x: float, half_y: float, load: float, metal: Material, friction: float, motion: Rolling, cells: tuple[int, int]
 ) -> xr.Dataset:
     """Two like bodies that touch on an ellipse, in steady rolling."""
-    body, gap = HalfSpace(material=of), ellipse_gap(along_x, along_y, load, of, cells)
+    body, gap = HalfSpace(material=metal), ellipse_gap(half_x, half_y, load, metal, cells)
     return solve_pair((body, body), gap, load, friction, motion, tolerance=1e-5)
 
 
@@ -241,7 +241,7 @@ UNIT_PROPERTIES = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
 EVERYWHERE = -np.inf, np.inf
 
 
-def rise_of(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
+def solve_rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
     """Temperature rise of a body with unit properties."""
     body = MovingBody(ThermalProperties(**UNIT_PROPERTIES), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
@@ -282,7 +282,7 @@ def band_checks() -> Iterator[Check]:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2, 2), cells_x=5, cells_y=64)
     band = np.where(np.abs(grid.y) < 1, 1.0, 0.0)
     for drift in (0.01, 0.3, 5.0, 100.0):
-        rises = rise_of(grid, band, 2 * drift, (0.0, 8.0))[2]
+        rises = solve_rise(grid, band, 2 * drift, (0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
         curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
         reference = Reference(f"band of uniform heat between two ends, Peclet number {drift:g}", "Jaeger (1942)")
@@ -297,12 +297,12 @@ def resting_checks() -> Iterator[Check]:
     cells = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
     square = np.where((np.abs(cells.x)[:, None] < 1) & (np.abs(cells.y) < 1), 1.0, 0.0)
     side = 0.5 * float(square[22].sum()) * cells.dy
-    centre_rise = float(rise_of(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
+    centre_rise = float(solve_rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
     reference = Reference("square of uniform heat at rest", source)
     yield reference.compare("rise in the middle", centre_rise, expected, 1e-5, relative=True)
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
-    centre_rise, expected = float(rise_of(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
+    centre_rise, expected = float(solve_rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
     yield Reference(case, source).compare("rise in the middle", centre_rise, expected, 2e-3, relative=True)
 
@@ -314,8 +314,8 @@ def end_checks() -> Iterator[Check]:
         Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges]))
     )
     heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half_grid.y) < 0.5)
-    end_rise = rise_of(half_grid, heat, 3.0, (0.0, np.inf))
-    mirrored_rise = rise_of(full_grid, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
+    end_rise = solve_rise(half_grid, heat, 3.0, (0.0, np.inf))
+    mirrored_rise = solve_rise(full_grid, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
     scale = mirrored_rise.max()
     reference = Reference("heat beside an insulated end", "symmetry")
     yield reference.compare("rise over the largest", end_rise / scale, mirrored_rise / scale, 1e-9)
@@ -336,7 +336,7 @@ def heat_carried_away(speed: float) -> tuple[float, float]:
     stencil = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * grid.dy)  # first derivative, sixth order
     outflow = 0.0
     for depth, weight in zip(40 * nodes**4, weights * 80 * nodes**3, strict=True):
-        rises = grid.dx * rise_of(grid, heat, speed, (0.0, 2.0), depth).sum(axis=0)
+        rises = grid.dx * solve_rise(grid, heat, speed, (0.0, 2.0), depth).sum(axis=0)
         for side, row in ((-1, 8), (1, 51)):
             outflow += side * weight * float(speed * rises[row] - stencil @ rises[row - 3 : row + 4])
     return outflow, float(heat.sum()) * grid.cell_area

@@ -257,7 +257,7 @@ def wear_in(
     Warns
     -----
     ConvergenceWarning
-        If `max_steps` did not suffice, or a contact did not converge. The last step ends the result.
+        If `max_steps` did not suffice, or a contact did not converge. The result ends at the last step.
 
     Examples
     --------
@@ -295,7 +295,7 @@ def wear_in(
         integrator = WearIntegrator(
             case=case,
             shape=contact_shape(case, cells, PrescribedLoad(case.normal_load, case.load_position)),
-            settings=Settings(max_iterations=2000),  # of one contact; large steps change the contact area often
+            settings=Settings(max_iterations=2000),  # per contact: long steps change its area in many iterations
             rate=rate / length,
             law=law,
             tolerance=tolerance,

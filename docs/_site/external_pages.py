@@ -17,7 +17,7 @@ LINKED_FILES = ("studies/*.toml", "studies/*.py", "LICENSE", "CITATION.cff")
 """Files that pages link to as they lie in the repository."""
 
 DIAGRAMS = re.compile(r'<script type="module">(?:(?!</script>).)*mermaid.*?</script>', re.DOTALL)
-"""A script in every notebook's page that would load diagrams, of which there are none, from another host."""
+"""Script in every notebook's page that loads diagrams from another host; the notebooks contain no diagrams."""
 
 PAGES = {
     "index.md": "README.md",

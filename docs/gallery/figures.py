@@ -71,7 +71,7 @@ PROGRAMS = {
 """Programs of figures that have no script of their name."""
 
 
-def sources_of(name: str) -> list[Path]:
+def find_sources(name: str) -> list[Path]:
     """Files that contain the code of a figure."""
     if name in PROGRAMS:
         sources = [ROOT / source for source in PROGRAMS[name].sources]
@@ -80,14 +80,14 @@ def sources_of(name: str) -> list[Path]:
     return [page if page.exists() else GALLERY / f"{name}.py"]
 
 
-def blocks_of(page: Path, language: str) -> str:
+def find_blocks(page: Path, language: str) -> str:
     """Blocks of a page in a language, one after the other."""
     return "\n".join(text for name, text in BLOCKS.findall(page.read_text()) if name == language)
 
 
-def code_of(source: Path) -> str:
+def read_code(source: Path) -> str:
     """Python code of a module, or of a page's blocks."""
-    return blocks_of(source, "python") if source.suffix == ".md" else source.read_text()
+    return find_blocks(source, "python") if source.suffix == ".md" else source.read_text()
 
 
 def figure_names() -> list[str]:
@@ -97,27 +97,27 @@ def figure_names() -> list[str]:
     return sorted(scripts | pages | PROGRAMS.keys())
 
 
-def studies_of(code: str) -> list[Path]:
+def find_studies(code: str) -> list[Path]:
     """Study files that code names."""
     return [ROOT / "studies" / file for file in sorted(set(re.findall(r"\w+\.toml", code)))]
 
 
-def syntax_of(source: Path) -> str:
+def parse_syntax(source: Path) -> str:
     """Syntax tree of a module or page without comments and docstrings."""
-    tree = ast.parse(code_of(source))
+    tree = ast.parse(read_code(source))
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             node.body = [entry for entry in node.body if not is_docstring(entry)]
-    return repr(structure_of(tree))
+    return repr(describe_structure(tree))
 
 
-def structure_of(node: object) -> object:
+def describe_structure(node: object) -> object:
     """Types and filled fields of a syntax tree, which are the same in each version of Python."""
     if isinstance(node, list):
-        return [structure_of(entry) for entry in node]
+        return [describe_structure(entry) for entry in node]
     if isinstance(node, ast.AST):
         return type(node).__name__, [
-            (name, structure_of(value)) for name, value in ast.iter_fields(node) if value not in (None, [])
+            (name, describe_structure(value)) for name, value in ast.iter_fields(node) if value not in (None, [])
         ]
     return node
 
@@ -132,14 +132,16 @@ def compute_hashes() -> dict[str, str]:
     modules = sorted((ROOT / "contactstudy" / "plots").glob("[!_]*.py"))
     hashes = {}
     for name in figure_names():
-        sources = sources_of(name)
-        code = "\n".join(map(code_of, sources))
+        sources = find_sources(name)
+        code = "\n".join(map(read_code, sources))
         functions = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
         modules_used = [
-            module for module in modules if functions & set(re.findall(r"^def (\w+)", code_of(module), re.MULTILINE))
+            module for module in modules if functions & set(re.findall(r"^def (\w+)", read_code(module), re.MULTILINE))
         ]
-        settings = [blocks_of(source, "toml") for source in sources if source.suffix == ".md"]
-        text = "".join([*map(syntax_of, sources + modules_used), *settings, *map(Path.read_text, studies_of(code))])
+        settings = [find_blocks(source, "toml") for source in sources if source.suffix == ".md"]
+        text = "".join(
+            [*map(parse_syntax, sources + modules_used), *settings, *map(Path.read_text, find_studies(code))]
+        )
         hashes[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
     return hashes
 
@@ -148,11 +150,11 @@ def draw(name: str) -> None:
     """Draw a figure, and record the hash of its code."""
     (ROOT / "results").mkdir(exist_ok=True)
     environment = os.environ | {"MPLBACKEND": "Agg"}
-    code = "\n".join(map(code_of, sources_of(name)))
+    code = "\n".join(map(read_code, find_sources(name)))
     if name in PROGRAMS:
         program = PROGRAMS[name]
         if program.command.startswith("studies/"):
-            for study in studies_of(code):
+            for study in find_studies(code):
                 subprocess.run([sys.executable, "-m", "contactstudy.cli", "run", study], cwd=ROOT, check=True)
         subprocess.run([sys.executable, *program.command.split()], cwd=ROOT, env=environment, check=True)
         shutil.copy(ROOT / program.file, GALLERY / f"{name}.png")
