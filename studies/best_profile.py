@@ -160,13 +160,15 @@ def draw(task: Task, designs: xr.Dataset) -> plt.Figure:
     for label, dashes in (("half-space", "--"), ("free ends", "-")):
         row = designs.sel(design=label)
         line = row.dropna("evaluation", subset=["looked_at"]).sortby("looked_at")
-        factors, worst = line["looked_at"].values, line["looked_at_pressure"].values
-        upper.semilogx(factors, np.where(np.isfinite(worst), worst, np.nan), dashes, color="black", label=label)
-        singular_factors = factors[np.isinf(worst)]
+        factors, worst_pressures = line["looked_at"].values, line["looked_at_pressure"].values
+        upper.semilogx(
+            factors, np.where(np.isfinite(worst_pressures), worst_pressures, np.nan), dashes, color="black", label=label
+        )
+        singular_factors = factors[np.isinf(worst_pressures)]
         has_singular |= bool(singular_factors.size)
         height, axes = np.full(singular_factors.size, 0.97), upper.get_xaxis_transform()
         upper.plot(singular_factors, height, "^", transform=axes, color="black", markerfacecolor="none")
-        upper.plot(float(row["delta"]), np.nanmin(worst), "o", color="black")
+        upper.plot(float(row["delta"]), np.nanmin(worst_pressures), "o", color="black")
         upper.axvspan(float(row["flat_from"]), float(row["flat_to"]), color="0.9")
     upper.set_xticks([0.3, 0.5, 1.0, 2.0, 4.0], ["0.3", "0.5", "1", "2", "4"])
     upper.minorticks_off()

@@ -306,7 +306,7 @@ def _hertz_checks(ball: Indenter) -> list[Check]:
     solutions = solve_with_errors(ball, HALF_SPACE, depth, ("depth",))["depth"]
     z = np.linspace(0.2, 0.8, 2001) * a
     axial, radial = hertz_circle_axis(z, a, PRESSURE, poisson)
-    largest = int(np.abs(axial - radial).argmax())
+    max_index = int(np.abs(axial - radial).argmax())
     wall_case = ball.case(0.0, model="mirror")
     walled = press_indenter(wall_case, refine_cells(wall_case, ball.accuracy).fine, depth)
     area = float(cs.analysis.contact_edges(walled)["contact_area"])
@@ -319,9 +319,9 @@ def _hertz_checks(ball: Indenter) -> list[Check]:
         Check(
             "sphere, half-space: von Mises / p0",
             solutions["von_mises"] / PRESSURE,
-            abs(axial - radial)[largest] / PRESSURE,
+            abs(axial - radial)[max_index] / PRESSURE,
         ),
-        Check("sphere, half-space: its depth / a", solutions["von_mises_depth"] / a, z[largest] / a),
+        Check("sphere, half-space: its depth / a", solutions["von_mises_depth"] / a, z[max_index] / a),
         Check("sphere, e = 0, end held by a smooth wall: load / Hertz", float(walled["normal_load"]) / ball.load, 0.5),
         Check("sphere, e = 0, end held by a smooth wall: area / (pi a^2)", area / (np.pi * a**2), 0.5),
         Check(f"sphere, e = {far:g} a: load at equal depth, from a point load", load, far_load(poisson, far)),

@@ -136,7 +136,7 @@ def solve_all(
         {
             name: (
                 dims,
-                [[[cell[name] for cell in row] for row in format_table] for format_table in rows],
+                [[[cell[name] for cell in row] for row in table] for table in rows],
                 {"units": "1", "long_name": f"{name.replace('_', ' ')}{' over p0' if name in PRESSURES else ''}"},
             )
             for name in QUANTITIES

@@ -3,7 +3,7 @@
 Usage: ``python studies/residual_stress.py [--out FOLDER]``; about a minute. Writes ``residual_stress.nc`` and
 ``residual_stress.png`` and prints a table.
 
-A slightly crowned roller that ends with the body rolls over it again and again. Its load is 15 % above Melan's limit
+A slightly crowned roller with ends flush with the body's rolls over it many times. Its load is 15 % above Melan's limit
 with residual stress along rolling. The material hardens a little. Stresses and depths are over k and a.
 """
 

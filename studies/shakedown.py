@@ -50,7 +50,7 @@ def line_contact(frictions: np.ndarray, poisson: float) -> xr.Dataset:
 
 
 def stated_errors(study: xr.Dataset) -> xr.DataArray:
-    """Stated error of the shakedown limit over it."""
+    """Relative stated error of the shakedown limit."""
     return (study["shakedown_limit_error"] / study["shakedown_limit"]).rename("error")
 
 
@@ -58,18 +58,20 @@ def draw(study: xr.Dataset, limits: xr.Dataset) -> plt.Figure:
     """Limits over friction and distance: a map, and lines with the line contact's limits, for each crown."""
     crowns = study["profile"].values
     figure, axes = plt.subplots(2, crowns.size, figsize=(8.0, 7.4), layout="constrained", squeeze=False)
-    for crown, upper, lower in zip(crowns, *axes, strict=True):
+    for crown, map_ax, line_ax in zip(crowns, *axes, strict=True):
         limit = study["shakedown_limit"].sel(profile=crown).transpose("e_over_a", "friction")
         friction, distance = limit["friction"].values, limit["e_over_a"].values
-        contours = upper.contourf(friction, distance, limit.values, levels=LEVELS, cmap="viridis", extend="both")
-        lines = upper.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
-        upper.clabel(lines, fmt="%.1f", fontsize="small")
-        upper.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
+        contours = map_ax.contourf(friction, distance, limit.values, levels=LEVELS, cmap="viridis", extend="both")
+        lines = map_ax.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
+        map_ax.clabel(lines, fmt="%.1f", fontsize="small")
+        map_ax.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
         for value, style in zip(distance, line_styles(distance.size), strict=True):
-            lower.plot(friction, limit.sel(e_over_a=value), label=f"$e$ = {value:g} $a$", **style)
+            line_ax.plot(friction, limit.sel(e_over_a=value), label=f"$e$ = {value:g} $a$", **style)
         for name, dashes in zip(LINE_CONTACT, (":", "--", "-"), strict=True):
-            lower.plot(limits["friction"], limits[name], color="black", linestyle=dashes, label=f"line contact, {name}")
-        lower.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
+            line_ax.plot(
+                limits["friction"], limits[name], color="black", linestyle=dashes, label=f"line contact, {name}"
+            )
+        line_ax.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
     figure.colorbar(contours, ax=axes[0], label="$p_0/k$ at shakedown")
     figure.legend(
         *axes[1, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small", frameon=False

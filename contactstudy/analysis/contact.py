@@ -239,8 +239,8 @@ def edge_factors(
     -------
     Dataset
         `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
-        `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
-        largest, anywhere). NaN without points and at a cut end; infinite at a singular end; without an error.
+        `over_reference_last` (over the reference's ends), `over_reference_middle`, and `over_reference_peak` (ratio of
+        the largest values). NaN without points and at a cut end; infinite at a singular end; without an error.
 
     Raises
     ------

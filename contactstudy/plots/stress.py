@@ -123,7 +123,7 @@ def plot_stress_plane(
 
 
 def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, float], unit: Units) -> None:
-    """Mark the largest value in the body, ``peak_<variable>``, with its distance from the plane if it lies beside."""
+    """Mark the largest value in the body, ``peak_<variable>``, with its distance from the plane unless it is 0."""
     name = f"peak_{variable}"
     if any(f"{name}{suffix}" not in case for suffix in ("", "_x", "_y", "_z")) or not np.isfinite(float(case[name])):
         return

@@ -70,7 +70,7 @@ def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
 
 STATES = ("failed", "skipped", "excluded", "missing")  # States of cases without a result
 TICK_WIDTH = 18  # Maximum number of letters of a name at an axis
-MAX_CELL_LABELS = 80  # cells up to which every cell has its value as text
+MAX_CELL_LABELS = 80  # Maximum number of cells with their values as text
 
 
 def plot_study_map(

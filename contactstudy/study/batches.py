@@ -115,8 +115,8 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal structure."""
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
-        for name, added in batch.attributes.items():
-            attributes[name] = common_attributes(name, attributes[name], added) if name in attributes else added
+        for name, attribute in batch.attributes.items():
+            attributes[name] = common_attributes(name, attributes[name], attribute) if name in attributes else attribute
     arrays = {
         name: RaggedArray(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
         for name, array in batches[0].arrays.items()
@@ -290,8 +290,8 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
                 continue
             attributes[name] = {key: variable.getncattr(key) for key in variable.ncattrs()}
             if dims := attributes[name].pop("array_dimensions", ""):
-                read_values = selected_names is None or name in selected_names
-                values = variable[:] if read_values else np.empty(0, dtype=variable.dtype)
+                is_selected = selected_names is None or name in selected_names
+                values = variable[:] if is_selected else np.empty(0, dtype=variable.dtype)
                 ragged_arrays[name] = RaggedArray(tuple(dims.split()), values)
             else:
                 columns[name] = variable[:]

@@ -315,12 +315,12 @@ class Workers:
                 self._faults[worker] = ""
                 if version != own_version:
                     self.exclude(worker, f"it has version {version} of contactstudy, not {own_version}")
-        find_usable = {worker for worker in connected_workers if self._faults.get(worker) == ""}
-        if find_usable or busy:
+        usable_workers = {worker for worker in connected_workers if self._faults.get(worker) == ""}
+        if usable_workers or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
             self._wait_for_worker(connected_workers)
-        return find_usable
+        return usable_workers
 
     def exclude(self, worker: str, reason: str) -> None:
         """Give a worker no further task."""

@@ -125,10 +125,10 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
-    axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
+    axis, expected = (solution["film"].interp(y=0.0).values for solution in (computed, stored))
     curve = Curve(("x / a", "h R / a^2 at y = 0"), stored["x"].values, axis, expected)
     yield reference.compare("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
-    min_film, expected = (data["film"].min("y").values for data in (computed, stored))
+    min_film, expected = (solution["film"].min("y").values for solution in (computed, stored))
     yield reference.compare("least film of each column over the reference", min_film / expected, 1.0, 0.02)
     yield reference.compare("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
 

@@ -226,7 +226,7 @@ def contact_program_checks() -> Iterator[Check]:
         yield reference.compare("force over full sliding's", computed, expected, 0.016, relative=True)
     soft_material = material(23e9, 0.31)
     modulus = 1 / (1 / soft_material.plane_strain_modulus + 1 / steel.plane_strain_modulus)
-    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm in the reference and 1 here.
+    # Creepages are proportional to the half-width over the pair's radius: 0.1 mm / 25 mm in the reference, 1 here.
     scale = 0.1 / 25
     for position, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
         force = position * 0.05 * 0.25 * np.pi * modulus
