@@ -10,9 +10,9 @@ deep as on the half-space, and with the same load. Lengths are over a: the radiu
 half-space, the Hertz half-width of the roller's mean load there. Pressures and stresses are over Hertz' p0.
 
 The sphere's von Mises stress rises towards the edge with the same load, as published solutions report: from 0.62 p0 to
-0.92 p0 at e = 0 for a Poisson's ratio of 0.3. At equal depth it first falls, to 0.59 p0 at e = 1.5 to 2 a, because the
-edge takes less load, and exceeds the half-space's only within 0.5 a, by 10 % at most. At the end of the roller, where
-the pressure peaks, both pressure and stress fall towards the edge, with the same load and at equal depth.
+0.92 p0 at e = 0 for a Poisson's ratio of 0.3. At equal depth the stress first falls, to 0.59 p0 at e = 1.5 to 2 a,
+because the load falls, and exceeds the half-space's stress only within 0.5 a, by 10 % at most. At the end of the
+roller, where the pressure peaks, both pressure and stress fall towards the edge, with the same load and at equal depth.
 """
 
 from __future__ import annotations

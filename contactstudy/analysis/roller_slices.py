@@ -62,8 +62,8 @@ def step_errors(values: FloatArray) -> FloatArray:
     neighbours = larger_neighbour_step(STEP_ERROR * steps)
     # A contact may end anywhere up to the middle of the next column.
     is_contact_end = (np.minimum(values[1:], values[:-1]) <= 0) & (steps > 0)
-    at_end = np.maximum(steps, np.maximum(neighbours[1:], neighbours[:-1]))
-    return np.where(is_contact_end, at_end, STEP_ERROR * steps)
+    end_errors = np.maximum(steps, np.maximum(neighbours[1:], neighbours[:-1]))
+    return np.where(is_contact_end, end_errors, STEP_ERROR * steps)
 
 
 def larger_neighbour_step(steps: FloatArray) -> FloatArray:

@@ -182,8 +182,8 @@ def _style_lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[
 
 def _count_extra_lines(ax: Axes) -> int:
     """Return the number of text lines below an axis in excess of two: one of ticks and one of the label."""
-    names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
-    return names + ax.get_xlabel().count("\n")
+    tick_lines = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
+    return tick_lines + ax.get_xlabel().count("\n")
 
 
 def _select_errors(dataset: xr.Dataset, name: str) -> tuple[xr.DataArray, xr.DataArray]:

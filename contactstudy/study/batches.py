@@ -157,11 +157,11 @@ def find_damage(path: Path) -> str:
     if not is_regular(path):
         return "it is not a regular file"
     try:
-        code = checksum(path)
+        actual = checksum(path)
     except OSError as error:
         return error.strerror or str(error)
     expected = path.name.removesuffix(SUFFIX).rpartition("-")[2]
-    return "" if expected == f"{code:08x}" else f"its checksum is {code:08x}, not {expected}"
+    return "" if expected == f"{actual:08x}" else f"its checksum is {actual:08x}, not {expected}"
 
 
 def batch_paths(folder: Path) -> list[Path]:

@@ -320,13 +320,13 @@ def end_checks() -> Iterator[Check]:
     reference = Reference("heat beside an insulated end", "symmetry")
     yield reference.compare("rise over the largest", end_rise / scale, mirrored_rise / scale, 1e-9)
     for speed in (1.0, -4.0):
-        outflow, power = heat_carried_away(speed)
+        outflow, power = compute_heat_flow(speed)
         case = f"heat in three cells between two ends, surface speed {speed:g}"
         reference = Reference(case, "conservation of energy")
         yield reference.compare("heat through planes before and behind, over the total", outflow / power, 1.0, 1e-6)
 
 
-def heat_carried_away(speed: float) -> tuple[float, float]:
+def compute_heat_flow(speed: float) -> tuple[float, float]:
     """Heat through planes before and behind some sources, by conduction and motion, and the heat of the sources, W."""
     grid = Grid(x_range=(0.0, 2.0), y_range=(-3, 3), cells_x=12, cells_y=60)
     heat = np.zeros(grid.shape)
