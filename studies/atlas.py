@@ -137,7 +137,7 @@ def create_table(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
 
 
 def add_residuals(table: xr.Dataset) -> xr.Dataset:
-    """Add scales, residuals of each point without itself, and the factors of the stated errors."""
+    """Add scales, leave-one-out residuals of the points, and the factors of the stated errors."""
     for name in QUANTITIES:
         scales = [1.0] * len(GROUPS)
         trials: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}

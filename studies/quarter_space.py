@@ -173,8 +173,8 @@ def largest_von_mises(indenter: Indenter, case: cs.Case, contact: xr.Dataset) ->
         raise ValueError(f"largest stress on the border of the points, x = {x[i] / a:g} a, z = {z[j] / a:g} a")
     spline = RectBivariateSpline(x / a, z / a, stress / PRESSURE)
     bounds = [(axis[max(position - 1, 0)] / a, axis[position + 1] / a) for axis, position in ((x, i), (z, j))]
-    solutions = minimize(lambda position: -spline(*position)[0, 0], (x[i] / a, z[j] / a), bounds=bounds)
-    return float(-solutions.fun * PRESSURE), float(solutions.x[1] * a)
+    optimum = minimize(lambda position: -spline(*position)[0, 0], (x[i] / a, z[j] / a), bounds=bounds)
+    return float(-optimum.fun * PRESSURE), float(optimum.x[1] * a)
 
 
 def evaluate_contact(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str, float]:

@@ -295,9 +295,9 @@ def _find_worst_planes(history: Array, slope: float) -> dict[str, Array]:
     while active.size:
         candidates = _rotate_frames(frames[active], angle[active])
         damage, _, _ = _compute_damage(history[point_index[active]], candidates, slope)
-        best = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point_index[active]], damage.argmax(axis=1), 0)
-        frames[active] = candidates[np.arange(active.size), best]
-        angle[active[best == 0]] *= 0.5
+        choice = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point_index[active]], damage.argmax(axis=1), 0)
+        frames[active] = candidates[np.arange(active.size), choice]
+        angle[active[choice == 0]] *= 0.5
         active = active[angle[active] > MIN_ROTATION]
     refined_frames = frames.reshape(-1, FRAMES, 2, 3)
     damage_terms = _compute_damage(history, refined_frames, slope)

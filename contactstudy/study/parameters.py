@@ -303,7 +303,7 @@ def identity_value(name: str, value: Any) -> Any:
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` without defaults and without a profile's name."""
-    return {name: part for name, value in values.items() if (part := identity_value(name, value)) is not None}
+    return {name: entry for name, value in values.items() if (entry := identity_value(name, value)) is not None}
 
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
