@@ -31,7 +31,7 @@ from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.plots.style import line_styles
 from contactstudy.verification import closed_forms
-from contactstudy.verification.free_ends import pressure_of
+from contactstudy.verification.free_ends import create_pressure
 from contactstudy.verification.problems import (
     LINE_LOAD,
     LOAD_CASES,
@@ -44,7 +44,7 @@ from contactstudy.verification.problems import (
     quartic,
     unit_material,
 )
-from contactstudy.verification.suite import HEADING, line, panels, row
+from contactstudy.verification.suite import HEADING, create_panels, format_line, format_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -137,7 +137,7 @@ def stress_grid() -> Table:
     cells = (8, 16, 32, 64)
     errors = []
     for count in cells:
-        load = pressure_of(case, count)
+        load = create_pressure(case, count)
         stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
         difference = np.abs(components(stress) - expected)
         errors.append((float(difference.max()), float(difference.mean())))
@@ -308,17 +308,17 @@ def tables() -> Iterator[Table]:
 def markdown(table: Table) -> str:
     """Markdown table of a convergence study."""
     cells = [f"**{value:.4g}**" if value == table.used else f"{value:.4g}" for value in table.values]
-    rows = [row([table.setting, *cells]), "|---" * (len(cells) + 1) + "|"]
+    rows = [format_row([table.setting, *cells]), "|---" * (len(cells) + 1) + "|"]
     for quantity, errors in table.errors.items():
-        rows.append(row([quantity, *(f"{error:.1e}" for error in errors)]))
+        rows.append(format_row([quantity, *(f"{error:.1e}" for error in errors)]))
         if table.order is not None:
-            rows.append(row(["... order", "", *(f"{order:.1f}" for order in table.orders(quantity))]))
+            rows.append(format_row(["... order", "", *(f"{order:.1f}" for order in table.orders(quantity))]))
     return f"**{table.title}**, against {table.source}\n\n" + "\n".join(rows)
 
 
 def plot_convergence(tables: list[Table]) -> Figure:
     """Draw errors over the values of every setting at equal distances; a dot marks the value in use."""
-    figure, axes = panels(len(tables))
+    figure, axes = create_panels(len(tables))
     for ax, table in zip(axes, tables, strict=True):
         used = table.values.index(table.used)
         for style, (quantity, errors) in zip(line_styles(len(table.errors)), table.errors.items(), strict=True):
@@ -345,7 +345,7 @@ def main() -> int:
         print(f"\n{markdown(table)}")
     print(f"\n{HEADING}")
     for check in checks:
-        print(line(check))
+        print(format_line(check))
     if options.out is not None:
         options.out.mkdir(parents=True, exist_ok=True)
         plot_convergence(all_tables).savefig(options.out / "convergence.png", dpi=110)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from contactstudy.study.worker import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
-MAX_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its reason
+MAX_REASONS = 20  # Maximum number of reasons on the screen; ``--all`` lists every case with its reason
 MANY_CASES = 100_000  # Combinations of a study that needs a confirmation, or --yes
 
 
@@ -73,7 +73,7 @@ def _print_written(*paths: Path) -> None:
     print(*(f"wrote {_format_path(path.resolve())}" for path in paths), sep="\n")
 
 
-def _study(options: argparse.Namespace) -> Study:
+def _read_study(options: argparse.Namespace) -> Study:
     """Read a study; a very large study needs a confirmation."""
     from contactstudy.study import Study
 
@@ -88,7 +88,7 @@ def _study(options: argparse.Namespace) -> Study:
     return study
 
 
-def _parallel(options: argparse.Namespace) -> dict[str, Any]:
+def _select_workers(options: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `run_study` that choose workers and solver."""
     names = ("workers", "scheduler", "wait", "solver")
     return {name: value for name in names if (value := getattr(options, name)) is not None}
@@ -104,24 +104,25 @@ def _run(options: argparse.Namespace) -> int:
             allowed = "two numbers with a slash, such as 3/40 for the third of forty shares"
             raise InvalidInputError("share", options.share, allowed)
         share = (int(share_number), int(count))
-    report = run_study(_study(options), options.out, share=share, **_parallel(options))
-    return _finish(report, complete=share is None, figure=not options.no_figure)
+    report = run_study(_read_study(options), options.out, share=share, **_select_workers(options))
+    return _finish_run(report, complete=share is None, figure=not options.no_figure)
 
 
 def _rerun(options: argparse.Namespace) -> int:
     from contactstudy.study import rerun_study
 
-    report = rerun_study(options.path, **_parallel(options))
-    return _finish(report, complete=True, figure=not options.no_figure)
+    report = rerun_study(options.path, **_select_workers(options))
+    return _finish_run(report, complete=True, figure=not options.no_figure)
 
 
-def _finish(report: RunReport, *, complete: bool, figure: bool) -> int:
+def _finish_run(report: RunReport, *, complete: bool, figure: bool) -> int:
     """Write summary and figures of all shares, then print: the files are complete if the output is closed."""
     lines: list[str] = []
     if complete and report.files:
         lines.append(f"wrote {_format_path(_write_summary(report.folder))}")
         try:
-            lines += [f"wrote {_format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
+            figure_paths = _draw_figures(report.folder) if figure else []
+            lines += [f"wrote {_format_path(path)}" for path in figure_paths]
         except ContactStudyError as error:
             lines.append(f"  no figure: {error}")
     print(*_run_lines(report), *lines, sep="\n")
@@ -137,11 +138,11 @@ def _write_summary(folder: Path, target: Path | None = None) -> Path:
     return path
 
 
-def _draw(folder: Path) -> list[Path]:
+def _draw_figures(folder: Path) -> list[Path]:
     """Draw the figures that suit the study, without a screen."""
     import matplotlib
 
-    previous = matplotlib.get_backend()
+    previous_backend = matplotlib.get_backend()
     matplotlib.use("Agg")
     try:
         from matplotlib import pyplot
@@ -157,25 +158,25 @@ def _draw(folder: Path) -> list[Path]:
             pyplot.close(figure)
         return paths
     finally:
-        matplotlib.use(previous)
+        matplotlib.use(previous_backend)
 
 
 def _plan(options: argparse.Namespace) -> int:
     from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
 
-    study = _study(options)
+    study = _read_study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
     print(f"study {study.name}: {study.size} combinations, results in {_format_path(folder.path)}", flush=True)
     if options.sample is not None:
-        chosen = {"sample": options.sample, "workers": options.workers, "solver": options.solver}
-        states = run_study(study, folder.path, **chosen).states
+        run_options = {"sample": options.sample, "workers": options.workers, "solver": options.solver}
+        states = run_study(study, folder.path, **run_options).states
     else:
         states = folder.states(study.plan())
     plan = states.plan
-    shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
-    print(f"{len(plan)} cases ({shape})")
-    print(*_state_lines(states, everything=options.all), sep="\n")
+    cube_text = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
+    print(f"{len(plan)} cases ({cube_text})")
+    print(*_state_lines(states, all_cases=options.all), sep="\n")
     return ALL_OK if plan.unique else USAGE  # `run` also refuses a study without cases to solve
 
 
@@ -188,7 +189,7 @@ def _status(options: argparse.Namespace) -> int:
     print(f"study {study.name}: {len(states.plan)} cases, results in {_format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    print(*_state_lines(states, everything=options.all), sep="\n")
+    print(*_state_lines(states, all_cases=options.all), sep="\n")
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 
@@ -244,10 +245,10 @@ def _verify(options: argparse.Namespace) -> int:
         if group not in shown_groups:
             print(f"\n{group}\n{suite.HEADING}")
         shown_groups.add(group)
-        print(suite.line(check), flush=True)
+        print(suite.format_line(check), flush=True)
 
     verification = suite.run(options.level, show)
-    print(f"\n{suite.summary(verification)}")
+    print(f"\n{suite.format_summary(verification)}")
     _print_written(*suite.write(verification, folder))
     return ALL_OK if verification.passed else SOME_FAILED
 
@@ -271,11 +272,11 @@ def format_bytes(size: float) -> str:
 def _run_lines(report: RunReport) -> Iterator[str]:
     """Lines on the result of a run."""
     yield f"{len(report.plan)} cases: {report.states.summary}; {report.solved} solved now"
-    yield from _reasons(report.states, "failed", identities=False)
+    yield from _reason_lines(report.states, "failed", identities=False)
     if report.failures:
         yield f"  details in {_format_path(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {_format_path(report.folder)}"
-    yield from _reasons(report.states, "skipped")
+    yield from _reason_lines(report.states, "skipped")
     for case in report.unconverged_cases[:MAX_REASONS]:
         yield f"  not converged, do not rely on it: {case.name}"
     for remark in report.remarks:
@@ -289,31 +290,31 @@ def _run_lines(report: RunReport) -> Iterator[str]:
         yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
 
 
-def _reasons(states: States, *statuses: str, identities: bool = True) -> Iterator[str]:
+def _reason_lines(states: States, *statuses: str, identities: bool = True) -> Iterator[str]:
     """Lines on cases of some states with a reason: for each reason the first case and the number of other cases."""
     groups: dict[tuple[str, str], list[int]] = {}
     for index in states.indices(*statuses):
         if reason := states.reasons[index]:
             groups.setdefault((states.status[index], reason), []).append(index)
     for (status, reason), indices in list(groups.items())[:MAX_REASONS]:
-        case, more = states.plan[indices[0]], f" (and {len(indices) - 1} more)" if len(indices) > 1 else ""
-        yield f"  {status}: {f'{case.id[:16]} ' if identities else ''}{case.name}: {reason}{more}"
+        case, others_text = states.plan[indices[0]], f" (and {len(indices) - 1} more)" if len(indices) > 1 else ""
+        yield f"  {status}: {f'{case.id[:16]} ' if identities else ''}{case.name}: {reason}{others_text}"
     if len(groups) > MAX_REASONS:
         yield f"  ... and {len(groups) - MAX_REASONS} more reasons"
 
 
-def _state_lines(states: States, *, everything: bool) -> Iterator[str]:
-    """Lines of counts, of the cases that need attention, or of every case, and on the remaining cases."""
+def _state_lines(states: States, *, all_cases: bool) -> Iterator[str]:
+    """Lines on the status of cases: counts, cases that need attention (or all cases), and a forecast of the rest."""
     for status, count in states.counts.items():
         yield f"  {count} {status}"
-    if everything:
+    if all_cases:
         for case in states.plan:
             reason = states.reasons[case.index]
-            state = f"  {states.status[case.index]}: {case.id[:16]} {case.name}"
-            yield f"{state}: {reason}" if reason else state
+            text = f"  {states.status[case.index]}: {case.id[:16]} {case.name}"
+            yield f"{text}: {reason}" if reason else text
     else:
-        yield from _reasons(states, "skipped")
-        yield from _reasons(states, "failed", "stale", "missing")
+        yield from _reason_lines(states, "skipped")
+        yield from _reason_lines(states, "failed", "stale", "missing")
         if sum(map(bool, states.reasons)) > 1:
             yield "  every case: --all"
     yield from _forecast_lines(states)
@@ -335,16 +336,16 @@ def _forecast_lines(states: States) -> Iterator[str]:
         yield f"  {duplicates} duplicates, solved once"
     missing, seconds = len(set(states.indices("missing")) & set(unique)), states.numbers("seconds")
     seconds_of_solved = seconds[seconds >= 0]
-    solved = len(seconds_of_solved)
-    if solved:
+    solved_count = len(seconds_of_solved)
+    if solved_count:
         size = sum(path.stat().st_size for path in states.results.paths)
-        total = format_bytes(size / solved * len(plan.unique))
-        yield f"files: about {total} at level {plan.level}, from {solved} solved cases"
+        total = format_bytes(size / solved_count * len(plan.unique))
+        yield f"files: about {total} at level {plan.level}, from {solved_count} solved cases"
     else:
         yield f"files: about {format_bytes(plan.size)} at level {plan.level} before compression"
-    if missing and solved:
+    if missing and solved_count:
         duration = format_duration(float(seconds_of_solved.mean()) * missing)
-        yield f"time: about {duration} of one core for {missing} cases, from {solved} solved ones"
+        yield f"time: about {duration} of one core for {missing} cases, from {solved_count} solved cases"
     elif missing:
         yield f"time: not estimated for {missing} cases; `plan --sample N` solves N of them for an estimate"
 
@@ -358,72 +359,72 @@ def command_parser() -> argparse.ArgumentParser:
         "129 after SIGHUP, 130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
     parser.add_argument("--version", action="store_true", help="show the version and end")
-    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parser.add_argument("--versions", action="store_true", help="show the package's and its dependencies' versions")
     parser.add_argument("--verbose", action="store_true", help="log to the error output")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
-    def command(
+    def add_command(
         action: Callable[[argparse.Namespace], int], path_kind: str, description: str
     ) -> argparse.ArgumentParser:
-        child = commands.add_parser(action.__name__.strip("_"), help=description, description=description)
-        child.set_defaults(action=action)
+        command = commands.add_parser(action.__name__.strip("_"), help=description, description=description)
+        command.set_defaults(action=action)
         meanings = {
             "study": "study file (TOML)",
             "folder": "results of a study",
             "file_or_folder": "netCDF file of a case, or a study's folder",
         }
         if path_kind:
-            child.add_argument("path", metavar=path_kind.upper(), type=Path, help=meanings[path_kind])
+            command.add_argument("path", metavar=path_kind.upper(), type=Path, help=meanings[path_kind])
         if path_kind == "study":
-            child.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
-        return child
+            command.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        return command
 
-    def parallel(child: argparse.ArgumentParser) -> None:
-        child.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
-        child.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
-        child.add_argument(
+    def add_worker_options(command: argparse.ArgumentParser) -> None:
+        command.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        command.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        command.add_argument(
             "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
         )
-        child.add_argument("--no-figure", action="store_true", help="draw no figure")
+        command.add_argument("--no-figure", action="store_true", help="draw no figure")
 
-    run = command(_run, "study", "Solve the cases of a study that are not solved yet.")
-    parallel(run)
+    run = add_command(_run, "study", "Solve the cases of a study that are not solved yet.")
+    add_worker_options(run)
     run.add_argument("--share", metavar="K/N", help="solve share K of N, such as 3/40: for job arrays")
-    text = "State of every case, errors in the study, and bytes and time of a run; solves nothing without --sample."
-    plan = command(_plan, "study", text)
+    help_text = "State of every case, errors in the study, bytes and time of a run; solves nothing without --sample."
+    plan = add_command(_plan, "study", help_text)
     plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, films by groups, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
-    for child in (run, plan):
-        child.add_argument("--yes", action="store_true", help=f"solve {MANY_CASES} cases and more without confirmation")
-    status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
-    for child in (plan, status):
-        child.add_argument("--all", action="store_true", help="list every case")
-    child = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
-    child.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
-    parallel(command(_rerun, "folder", "Solve failed, stale and missing cases again."))
-    text = "Check the solver against closed forms, finite elements and published numbers."
-    child = command(_verify, "", text)
-    child.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
-    child.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
-    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
-    child = command(_export, "file_or_folder", text)
-    child.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
-    child.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
-    child.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
-    child.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
-    child.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
-    child.add_argument("--out", metavar="FILE", type=Path, help="default: next to the results; - for the screen")
-    explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
+    for command in (run, plan):
+        command.add_argument("--yes", action="store_true", help=f"solve {MANY_CASES} cases or more unconfirmed")
+    status = add_command(_status, "folder", "State of every case: done, failed, stale or missing.")
+    for command in (plan, status):
+        command.add_argument("--all", action="store_true", help="list every case")
+    command = add_command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
+    command.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    add_worker_options(add_command(_rerun, "folder", "Solve failed, stale and missing cases again."))
+    help_text = "Check the solver against closed forms, finite elements and published numbers."
+    command = add_command(_verify, "", help_text)
+    command.add_argument("--level", choices=("quick", "full"), default="quick", help="default quick, a minute")
+    command.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    help_text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
+    command = add_command(_export, "file_or_folder", help_text)
+    command.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
+    command.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    command.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line, m, for csv (--line=-1e-4,0,0:...)")
+    command.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    command.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter; repeatable")
+    command.add_argument("--out", metavar="FILE", type=Path, help="default: next to the results; - for the screen")
+    explore = add_command(_explore, "folder", "Serve a page to look through a study, on this machine.")
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
-    text = "host name that a browser may use besides localhost, such as that of a proxy; repeatable"
-    explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
+    help_text = "host name that a browser may use besides localhost, such as that of a proxy; repeatable"
+    explore.add_argument("--host", metavar="NAME", action="append", default=[], help=help_text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
-    text = "Write one HTML page of a case or of a study, for a reader without Python."
-    child = command(_report, "file_or_folder", text)
-    child.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
-    text = "value of a swept parameter that a study's figures keep to; repeatable"
-    child.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    child.add_argument("--out", metavar="FILE", type=Path, help="default: next to the file; report.html in a folder")
+    help_text = "Write one HTML page of a case or of a study, for a reader without Python."
+    command = add_command(_report, "file_or_folder", help_text)
+    command.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    help_text = "value of a swept parameter that a study's figures keep to; repeatable"
+    command.add_argument("--select", metavar="NAME=VALUE", action="append", help=help_text)
+    command.add_argument("--out", metavar="FILE", type=Path, help="default: next to the file; report.html in a folder")
     return parser
 
 

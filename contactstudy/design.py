@@ -29,7 +29,7 @@ LOGGER = logging.getLogger(__name__)
 # A variable of the result, or a function of the result that returns a number, or a number and its error
 Measure = str | Callable[[xr.Dataset], object]
 MIN_DIFFERENCE = 1e-9  # Fraction of a parameter's range below which two designs are equal
-SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan with one parameter; with more, factor on powers of two
+SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter; of more, times powers of two
 # Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
 OPTIMUM_TOLERANCE, SIMPLEX_SIZE = 0.01, 0.15
 FLAT_RANGE_TOLERANCE = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
@@ -69,7 +69,7 @@ class Evaluations:
 
     cases: list[Case]
     profile: Callable[..., Profile]
-    ranges: dict[str, tuple[float, float]]  # low, if positive with equal ratios for equal steps of the fraction; high
+    ranges: dict[str, tuple[float, float]]  # low, high; if low is positive, fractions divide the logarithm
     measure: Measure
     accuracy: float  # of the contacts; relative error of a measure without an error
     settings: Mapping[str, object]  # further arguments of solve
@@ -89,11 +89,11 @@ class Evaluations:
         return min(self.designs, key=lambda design: design.value)
 
     def __call__(self, fractions: FloatArray) -> Design:
-        """Return the design at the fractions of the ranges, solved unless an earlier one has the same fractions."""
+        """Return the design at the fractions of the ranges; solve it unless an earlier design has these fractions."""
         clipped = np.clip(np.asarray(fractions, dtype=np.float64), 0.0, 1.0)
-        for earlier in self.designs:
-            if np.abs(earlier.fractions - clipped).max() <= MIN_DIFFERENCE:
-                return earlier
+        for earlier_design in self.designs:
+            if np.abs(earlier_design.fractions - clipped).max() <= MIN_DIFFERENCE:
+                return earlier_design
         design = self._solve_design(clipped)
         self.designs.append(design)
         LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
@@ -175,22 +175,22 @@ def search_optimum(evaluations: Evaluations) -> Design:
     """Return the best design; the search reserves evaluations for the ends of the flat range."""
     parameters = len(evaluations.ranges)
     if parameters == 1:
-        scan = np.linspace(0.0, 1.0, SCAN_COUNT)[:, None]
+        scanned_fractions = np.linspace(0.0, 1.0, SCAN_COUNT)[:, None]
     else:
         from scipy.stats.qmc import Sobol
 
-        scan = Sobol(parameters, scramble=False).random(min_designs(parameters) - 1)
-    start_design = min((evaluations(fractions) for fractions in scan), key=lambda design: design.value)
+        scanned_fractions = Sobol(parameters, scramble=False).random(min_designs(parameters) - 1)
+    start_design = min((evaluations(fractions) for fractions in scanned_fractions), key=lambda design: design.value)
     if not np.isfinite(start_design.value):
         if evaluations.last_error is not None:
             raise evaluations.last_error
         allowed = "such that the measure is finite somewhere within them"
         raise InvalidInputError("bounds", evaluations.ranges, allowed, REMEDY)
     # The search replaces an infinite measure by 1e3 times the least measure.
-    maximum = 1e3 * max(abs(start_design.value), np.finfo(np.float64).tiny)
+    measure_cap = 1e3 * max(abs(start_design.value), np.finfo(np.float64).tiny)
 
-    def finite_measure(fractions: FloatArray) -> float:
-        return min(evaluations(np.atleast_1d(fractions)).value, maximum)
+    def evaluate_finite_measure(fractions: FloatArray) -> float:
+        return min(evaluations(np.atleast_1d(fractions)).value, measure_cap)
 
     # Evaluations per parameter that are reserved for the ends of the flat range
     budget = max(evaluations.remaining - 4 * parameters, 1)
@@ -201,21 +201,21 @@ def search_optimum(evaluations: Evaluations) -> Design:
         tolerances = {"xatol": OPTIMUM_TOLERANCE, "fatol": start_design.error}
         options = tolerances | {"initial_simplex": simplex, "maxfev": budget}
         start, bounds = start_design.fractions, [(0.0, 1.0)] * parameters
-        optimize.minimize(finite_measure, start, method="Nelder-Mead", bounds=bounds, options=options)
+        optimize.minimize(evaluate_finite_measure, start, method="Nelder-Mead", bounds=bounds, options=options)
     elif budget > 1:  # Brent's method, between the neighbours of the best design; the method takes two or more designs.
         middle, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
         bracket = (max(middle - step, 0.0), min(middle + step, 1.0))
         options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}
-        optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
+        optimize.minimize_scalar(evaluate_finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best
 
 
 def find_flat_ranges(evaluations: Evaluations, best: Design) -> FloatArray:
     """Return the fractions (2, parameter) between which a parameter alone changes the measure less than the errors."""
-    sides = list(product(range(len(evaluations.ranges)), (0.0, 1.0)))
+    directions = list(product(range(len(evaluations.ranges)), (0.0, 1.0)))
     ends = [
-        _find_flat_end(evaluations, best, *side, limit=evaluations.remaining // (len(sides) - index))
-        for index, side in enumerate(sides)
+        _find_flat_end(evaluations, best, *direction, limit=evaluations.remaining // (len(directions) - index))
+        for index, direction in enumerate(directions)
     ]
     return np.reshape(ends, (-1, 2)).T
 
@@ -226,7 +226,7 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
     if abs(origin - bound) <= MIN_DIFFERENCE:
         return bound
 
-    def line() -> list[float]:
+    def line_fractions() -> list[float]:
         """Fractions of the designs that differ from the best in this parameter alone."""
         fractions = np.array([design.fractions for design in evaluations.designs])
         on_line = (np.abs(np.delete(fractions - best.fractions, parameter, axis=1)) <= MIN_DIFFERENCE).all(axis=1)
@@ -243,8 +243,8 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
 
     # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
     flat_end, worse_end = origin, bound
-    earlier = [fraction for fraction in line() if (fraction - origin) * (bound - origin) > 0]
-    for fraction in sorted(earlier, key=lambda fraction: abs(fraction - origin)):
+    earlier_fractions = [fraction for fraction in line_fractions() if (fraction - origin) * (bound - origin) > 0]
+    for fraction in sorted(earlier_fractions, key=lambda fraction: abs(fraction - origin)):
         if excess(fraction) > 0:
             worse_end = fraction
             break
@@ -257,14 +257,14 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
             return bound
     if abs(worse_end - flat_end) <= FLAT_RANGE_TOLERANCE or limit < 1:
         return flat_end
-    flat_limit, state = optimize.brentq(
+    flat_limit, report = optimize.brentq(
         excess, flat_end, worse_end, xtol=FLAT_RANGE_TOLERANCE, rtol=1e-3, maxiter=limit, full_output=True, disp=False
     )
-    if state.converged:
+    if report.converged:
         return float(flat_limit)
     low, high = sorted((flat_end, worse_end))
-    inner = [fraction for fraction in line() if low <= fraction <= high and excess(fraction) <= 0]
-    return max(inner, key=lambda fraction: abs(fraction - origin))
+    flat_fractions = [fraction for fraction in line_fractions() if low <= fraction <= high and excess(fraction) <= 0]
+    return max(flat_fractions, key=lambda fraction: abs(fraction - origin))
 
 
 BOUND_TOLERANCE = 0.01  # Fraction of a range between an optimum at a bound and the bound
@@ -293,8 +293,7 @@ def best_profile(
     bounds : mapping of str to tuple of float
         Least and largest value of each parameter; if both are positive, equal steps are equal ratios.
     measure : str or callable
-        A scalar variable of the result of :func:`contactstudy.solve`; or a function of the result that returns a
-        number, or a number and its error.
+        A scalar of the result of :func:`contactstudy.solve`; or a function that returns a number, or number and error.
     accuracy : float
         Accuracy of every contact, see :func:`contactstudy.solve`, and relative error of a measure without an error.
     settings : mapping
@@ -317,8 +316,7 @@ def best_profile(
     Raises
     ------
     InvalidInputError
-        If an argument is out of range, the measure is unknown or infinite throughout the bounds, or no profile within
-        the bounds is valid.
+        If an argument is out of range, the measure is unknown or infinite within the bounds, or no profile is valid.
 
     Warns
     -----
@@ -347,17 +345,17 @@ def best_profile(
         if not low < high:
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
         ranges[str(name)] = float(low), float(high)
-    listed_cases = [cases] if isinstance(cases, Case) else list(cases) if isinstance(cases, Iterable) else []
-    for case in listed_cases or (cases,):
+    case_list = [cases] if isinstance(cases, Case) else list(cases) if isinstance(cases, Iterable) else []
+    for case in case_list or (cases,):
         checks.instance("cases", case, Case, "a Case, or a sequence of Cases")
-    load_positions = [np.nan if case.load_position is None else case.load_position for case in listed_cases]
+    load_positions = [np.nan if case.load_position is None else case.load_position for case in case_list]
     case_coordinates = {
-        "case_load": ("case", [case.normal_load for case in listed_cases]),  # raises for a prescribed approach
-        "case_tilt": ("case", [case.tilt for case in listed_cases]),
+        "case_load": ("case", [case.normal_load for case in case_list]),  # raises for a prescribed approach
+        "case_tilt": ("case", [case.tilt for case in case_list]),
         "case_load_position": ("case", load_positions),
     }
-    designs = Evaluations(
-        cases=listed_cases,
+    search = Evaluations(
+        cases=case_list,
         profile=profile,
         ranges=ranges,
         measure=measure,
@@ -365,27 +363,27 @@ def best_profile(
         settings=dict(settings),
         max_designs=checks.count("evaluations", evaluations, minimum=min_designs(len(ranges))),
     )
-    best = search_optimum(designs)
-    result = _label_designs(designs, *find_flat_ranges(designs, best)).assign_coords(case_coordinates)
+    best = search_optimum(search)
+    result = _label_designs(search, *find_flat_ranges(search, best)).assign_coords(case_coordinates)
     for name in result["parameter"].values[result["at_bound"].values]:
-        column = result.sel(parameter=name)
-        value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
+        parameter_result = result.sel(parameter=name)
+        value, low, high = (float(parameter_result[key]) for key in ("optimum", "lower_bound", "upper_bound"))
         message = f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g})"
         hint = "widen the bounds if such a roller can be manufactured"
         warnings.warn(f"{message}; {hint}", BoundWarning, stacklevel=2)
     return result
 
 
-def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:
+def _label_designs(evaluations: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:
     """Label the optimum, the ends of the flat ranges (fractions), and every design."""
-    best, evaluated_designs, names = designs.best, designs.designs, list(designs.ranges)
+    best, designs, names = evaluations.best, evaluations.designs, list(evaluations.ranges)
     optimum = best.fractions
-    lower_bounds, upper_bounds = np.transpose(list(designs.ranges.values()))
+    lower_bounds, upper_bounds = np.transpose(list(evaluations.ranges.values()))
     # An entirely flat range does not bound the optimum.
     is_flat = (flat_from < BOUND_TOLERANCE) & (flat_to > 1 - BOUND_TOLERANCE)
 
     def parameters(fractions: FloatArray) -> list[float]:
-        return list(designs.parameters(fractions).values())
+        return list(evaluations.parameters(fractions).values())
 
     arrays: dict[str, tuple[object, object]] = {
         "optimum": ("parameter", parameters(optimum)),
@@ -396,23 +394,23 @@ def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatAr
         "at_bound": ("parameter", (np.minimum(optimum, 1 - optimum) < BOUND_TOLERANCE) & ~is_flat),
         "measure": ((), best.value),
         "measure_error": ((), best.error),
-        "design": (("evaluation", "parameter"), [parameters(design.fractions) for design in evaluated_designs]),
-        "design_measure": ("evaluation", [design.value for design in evaluated_designs]),
-        "design_measure_error": ("evaluation", [design.error for design in evaluated_designs]),
-        "case_measure": (("evaluation", "case"), [design.values for design in evaluated_designs]),
+        "design": (("evaluation", "parameter"), [parameters(design.fractions) for design in designs]),
+        "design_measure": ("evaluation", [design.value for design in designs]),
+        "design_measure_error": ("evaluation", [design.error for design in designs]),
+        "case_measure": (("evaluation", "case"), [design.values for design in designs]),
     }
     result = xr.Dataset(
         arrays,
         coords={
             "parameter": names,
-            "parameter_units": ("parameter", [unit_of(designs.profile, name) for name in names]),
-            "evaluation": np.arange(1, len(evaluated_designs) + 1),
-            "case": np.arange(1, len(designs.cases) + 1),
+            "parameter_units": ("parameter", [unit_of(evaluations.profile, name) for name in names]),
+            "evaluation": np.arange(1, len(designs) + 1),
+            "case": np.arange(1, len(evaluations.cases) + 1),
         },
     )
-    if designs.units:
+    if evaluations.units:
         for name in ("measure", "measure_error", "design_measure", "design_measure_error", "case_measure"):
-            result[name].attrs["units"] = designs.units
-    measure = designs.measure
+            result[name].attrs["units"] = evaluations.units
+    measure = evaluations.measure
     result.attrs["measure"] = measure if isinstance(measure, str) else getattr(measure, "__name__", repr(measure))
     return describe(result, "best parameters of a profile")

@@ -1,4 +1,4 @@
-"""Results for others' tools: fields as VTK for ParaView, everything for MATLAB, lines and tables as CSV."""
+"""Results for other programs: fields as VTK for ParaView, all variables for MATLAB, lines and tables as CSV."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import along_line, single_case
 from contactstudy.analysis.axes import axis_dimensions, positions
-from contactstudy.analysis.cuts import fields_on_same_points, named_arrays, points_hint
+from contactstudy.analysis.cuts import describe_points, fields_on_same_points, select_arrays
 from contactstudy.arrays.variables import (
     AXES,
     ERROR_KIND,
@@ -85,7 +85,7 @@ def to_table(
     Raises
     ------
     InvalidInputError
-        If the Dataset contains several cases, variables are missing or on different points, or the line leaves it.
+        If the Dataset contains several cases, variables are missing or on different points, or the line leaves them.
 
     Examples
     --------
@@ -96,13 +96,13 @@ def to_table(
     require(dataset)
     case = single_case(dataset)
     if line is None:
-        arrays = named_arrays(case, variables)
+        arrays = select_arrays(case, variables)
         if variables is None:
             arrays = {name: array for name, array in arrays.items() if array.ndim}
         points_of_arrays = {frozenset(array.dims) for array in arrays.values()}
         if len(points_of_arrays) != 1 or frozenset() in points_of_arrays:
             allowed = "variables on the same points"
-            raise InvalidInputError("variables", variables or "all", allowed, points_hint(arrays))
+            raise InvalidInputError("variables", variables or "all", allowed, describe_points(arrays))
         fields = xr.Dataset(arrays)
     else:
         if not isinstance(line, Sequence) or len(line) != 2:
@@ -110,23 +110,23 @@ def to_table(
         fields = along_line(case, *line, points=points, variables=variables)
     dims = list(fields.sizes)
     coordinates = [str(name) for name, array in fields.coords.items() if array.ndim and name not in dims]
-    frame = fields.to_dataframe().reset_index()
-    names = [name for name in [*dims, *coordinates, *fields.data_vars] if name in frame]
-    return frame[names].rename(columns=headings(fields, [str(name) for name in names]))
+    table = fields.to_dataframe().reset_index()
+    names = [name for name in [*dims, *coordinates, *fields.data_vars] if name in table]
+    return table[names].rename(columns=headings(fields, [str(name) for name in names]))
 
 
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula, which a spreadsheet would run
+FORMULA_CHARACTERS = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula, which a spreadsheet would run
 
 
-def _escape(entry: object) -> object:
-    """Return a cell with an apostrophe before a formula."""
-    return f"'{entry}" if isinstance(entry, str) and entry.startswith(FORMULA) else entry
+def _escape_formula(entry: object) -> object:
+    """Return the entry of a table with an apostrophe before a formula."""
+    return f"'{entry}" if isinstance(entry, str) and entry.startswith(FORMULA_CHARACTERS) else entry
 
 
 def csv_text(table: pd.DataFrame) -> str:
     """Return a table as CSV, with an apostrophe before texts that a spreadsheet would run as formulas."""
-    texts = {name: column.map(_escape) for name, column in table.items() if column.dtype.kind not in "fiub"}
-    return str(table.assign(**texts).rename(columns=_escape).to_csv(index=False))
+    texts = {name: column.map(_escape_formula) for name, column in table.items() if column.dtype.kind not in "fiub"}
+    return str(table.assign(**texts).rename(columns=_escape_formula).to_csv(index=False))
 
 
 def to_csv(
@@ -199,7 +199,7 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     Raises
     ------
     InvalidInputError
-        If the path ends otherwise, or a variable is missing, has an invalid name in MATLAB or more than 2 GB.
+        If the path has another suffix, or a variable is missing, has an invalid name in MATLAB or more than 2 GB.
     StoreError
         If the file cannot be written.
 
@@ -218,7 +218,7 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     require(dataset)
     target = output_path(path, ".mat")
     content: dict[str, Any] = {name: {} for name in STRUCTS}
-    arrays = named_arrays(dataset, variables)
+    arrays = select_arrays(dataset, variables)
     for array in list(arrays.values()):
         arrays |= {str(name): coordinate for name, coordinate in array.coords.items()}
     for name, array in arrays.items():
@@ -242,8 +242,8 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     return target
 
 
-TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)  # Indices of xx, xy, xz, yx, ... among the six components of a result
-TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}  # VTK's types of arrays
+TENSOR_INDICES = (0, 3, 4, 3, 1, 5, 4, 5, 2)  # Indices of xx, xy, xz, yx, ... among the six components of a result
+VTK_TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}  # VTK's types of arrays
 QUADRILATERAL, HEXAHEDRON = 9, 12  # VTK's numbers of kinds of cells
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # Corners of a cell in VTK's order, along its first two axes
 
@@ -258,8 +258,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     path : str or Path
         File to write, ending with ``.vtr`` or ``.vtu``.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all fields in
-        the body, or all surfaces if there are none.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all in the body, else all surfaces.
 
     Returns
     -------
@@ -289,10 +288,10 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     fields = fields_on_same_points(single_case(dataset), variables)
     first_field = next(iter(fields.values()))
     if target.suffix == ".vtr":
-        axes, data = _on_points(fields)
+        axes, point_fields = _sort_by_position(fields)
         extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
         # In the format, x varies fastest from point to point.
-        points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in data.items()}
+        points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in point_fields.items()}
         sections = {
             "PointData": {name: values.reshape(-1, *values.shape[3:]) for name, values in points.items()},
             "Coordinates": dict(zip(AXES, axes, strict=True)),
@@ -305,36 +304,36 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         values = {name: array.transpose("x", "y").values for name, array in fields.items()}
         _write_mesh(target, edges, values, in_cells=True)
     else:
-        _write_mesh(target, *_on_points(fields), in_cells=False)
+        _write_mesh(target, *_sort_by_position(fields), in_cells=False)
     return target
 
 
-def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[str, FloatArray]]:
+def _sort_by_position(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[str, FloatArray]]:
     """Increasing positions along x, y and z, and the values at these points (x, y, z, ...)."""
     first_field = next(iter(fields.values()))
     dims = axis_dimensions(first_field)
     # The format requires increasing positions; an axis without positions is a plane at 0.
     points = {axis: positions(first_field, axis).values if axis in dims else np.zeros(1) for axis in AXES}
-    order = {axis: np.argsort(values, kind="stable") for axis, values in points.items()}
-    data = {}
+    sort_indices = {axis: np.argsort(values, kind="stable") for axis, values in points.items()}
+    sorted_fields = {}
     for name, array in fields.items():
         values = array.transpose(*dims.values()).values.astype(np.float64)
         field_values = values.reshape([points[axis].size for axis in AXES])
-        data[name] = field_values[np.ix_(*order.values())]
-    if all(name in data for name in STRESSES):
-        components = np.stack([data[name] for name in STRESSES], axis=-1)
-        data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
-    return [points[axis][order[axis]] for axis in AXES], data
+        sorted_fields[name] = field_values[np.ix_(*sort_indices.values())]
+    if all(name in sorted_fields for name in STRESSES):
+        components = np.stack([sorted_fields[name] for name in STRESSES], axis=-1)
+        sorted_fields["stress"] = components[..., TENSOR_INDICES].reshape(*components.shape[:-1], 3, 3)
+    return [points[axis][sort_indices[axis]] for axis in AXES], sorted_fields
 
 
-def _write_mesh(path: Path, axes: list[FloatArray], data: Mapping[str, FloatArray], *, in_cells: bool) -> None:
+def _write_mesh(path: Path, axes: list[FloatArray], fields: Mapping[str, FloatArray], *, in_cells: bool) -> None:
     """Write the cells between points (x, y, z), with values on the points or in the cells."""
-    kind, corners = _mesh_cells([axis.size for axis in axes])
-    nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
+    kind, corners = _create_mesh_cells([axis.size for axis in axes])
+    nodes = np.stack([axis_positions.ravel() for axis_positions in np.meshgrid(*axes, indexing="ij")], axis=1)
     sections: dict[str, dict[str, Array]] = {
         "CellData" if in_cells else "PointData": {
             name: values.reshape(len(corners if in_cells else nodes), -1).astype(np.float64)
-            for name, values in data.items()
+            for name, values in fields.items()
         },
         "Points": {"Points": nodes},
         "Cells": {
@@ -350,30 +349,31 @@ def _write_mesh(path: Path, axes: list[FloatArray], data: Mapping[str, FloatArra
 def _write_xml(
     path: Path, kind: str, grid: dict[str, str], piece: dict[str, str], sections: Mapping[str, Mapping[str, Array]]
 ) -> None:
-    """Write the arrays of a grid in XML, each in base64 as its number of bytes and its bytes."""
+    """Write arrays in XML as base64 of their number of bytes and bytes; `grid` and `piece` are elements' attributes."""
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian", header_type="UInt64")
-    parent = ET.SubElement(ET.SubElement(root, kind, grid), "Piece", piece)
+    piece_element = ET.SubElement(ET.SubElement(root, kind, grid), "Piece", piece)
     for section, arrays in sections.items():
-        entries = ET.SubElement(parent, section)
-        for name, rows in arrays.items():
-            element = ET.SubElement(entries, "DataArray", type=TYPES[rows.dtype.kind], Name=name, format="binary")
-            if rows.size > len(rows):
-                element.set("NumberOfComponents", str(rows.size // len(rows)))
-            content = rows.astype(rows.dtype.newbyteorder("<"), copy=False).tobytes()
-            element.text = base64.b64encode(np.uint64(rows.nbytes).tobytes() + content).decode()
+        section_element = ET.SubElement(piece_element, section)
+        for name, array in arrays.items():
+            array_type = VTK_TYPES[array.dtype.kind]
+            element = ET.SubElement(section_element, "DataArray", type=array_type, Name=name, format="binary")
+            if array.size > len(array):
+                element.set("NumberOfComponents", str(array.size // len(array)))
+            content = array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes()
+            element.text = base64.b64encode(np.uint64(array.nbytes).tobytes() + content).decode()
     with checks.writing(path) as temporary_path:
         ET.ElementTree(root).write(temporary_path, encoding="utf-8", xml_declaration=True)
 
 
-def _mesh_cells(counts: list[int]) -> tuple[int, IntArray]:
+def _create_mesh_cells(counts: list[int]) -> tuple[int, IntArray]:
     """VTK's kind of the cells between points, from the numbers of points along the axes, and each cell's corners."""
     points = np.arange(int(np.prod(counts)), dtype="<i8").reshape([count for count in counts if count > 1])
     if points.ndim < 2:
         allowed = "on at least two points along two of x, y and z"
         raise InvalidInputError("variables", f"{counts} points", allowed, "take .vtr or CSV")
     cell_corners = CORNERS if points.ndim == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
-    sides = (slice(None, -1), slice(1, None))  # points at the lower and the upper side of the cells along an axis
-    corners = [points[tuple(sides[upper] for upper in corner)].ravel() for corner in cell_corners]
+    neighbour_slices = (slice(None, -1), slice(1, None))  # points at the lower and the upper faces of the cells
+    corners = [points[tuple(neighbour_slices[is_upper] for is_upper in corner)].ravel() for corner in cell_corners]
     return (QUADRILATERAL if points.ndim == 2 else HEXAHEDRON), np.stack(corners, axis=1)
 
 
@@ -412,17 +412,18 @@ def export_results(
         dataset = open_study(path) if path.is_dir() else load_result(path, "path")
         for name, value in selection_of(select).items():
             dataset = dataset.isel({name: index_of(dataset, name, value, "select")})
-        names = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
+        dims = dataset["status"].dims if "status" in dataset else ()
+        swept_names = [str(dim) for dim in dims if dataset.sizes[dim] > 1]
         if line is not None and kind != "csv":
             raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")
-        if names and kind != "mat":
-            allowed, example = f"with a value of {', '.join(names)} too", dataset[names[0]].values[0]
-            raise InvalidInputError("select", list(select), allowed, f"such as --select {names[0]}={example}")
+        if swept_names and kind != "mat":
+            allowed, example = f"with a value of {', '.join(swept_names)} too", dataset[swept_names[0]].values[0]
+            raise InvalidInputError("select", list(select), allowed, f"such as --select {swept_names[0]}={example}")
         target = out or (path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind]))
         if kind == "vtk":
             return to_vtk(dataset, target, variables)
         if kind == "mat":
-            if names and variables is None:
+            if swept_names and variables is None:
                 dataset = dataset.drop_dims([dim for dim in dataset.dims if dim not in dataset["status"].dims])
             return to_mat(dataset, target, variables)
         table = to_table(dataset, variables, line=None if line is None else parse_line(line), points=points)

@@ -22,8 +22,8 @@ def version_of(package: str) -> str:
 @cache
 def versions() -> dict[str, str]:
     """Versions of this package, of Python, and of the packages on which results depend."""
-    base = {"contactstudy": version_of("contactstudy"), "python": platform.python_version()}
-    return base | {package: version_of(package) for package in PACKAGES}
+    core_versions = {"contactstudy": version_of("contactstudy"), "python": platform.python_version()}
+    return core_versions | {package: version_of(package) for package in PACKAGES}
 
 
 def show_versions() -> None:
@@ -34,7 +34,7 @@ def show_versions() -> None:
     >>> show_versions()  # doctest: +ELLIPSIS
     contactstudy ...
     """
-    further = {name: release for name in OPTIONAL_PACKAGES if (release := version_of(name)) != "unknown"}
-    rows = versions() | further | {"system": platform.platform()}
+    optional_versions = {name: release for name in OPTIONAL_PACKAGES if (release := version_of(name)) != "unknown"}
+    rows = versions() | optional_versions | {"system": platform.platform()}
     width = max(map(len, rows))
     print("\n".join(f"{name:{width}} {release}" for name, release in rows.items()))

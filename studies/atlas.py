@@ -2,8 +2,8 @@
 
 Usage: ``python studies/atlas.py [--points 1024] [--out FOLDER]``; about 2.3 s of processor time per point. Solves the
 points of a Sobol sequence in five dimensionless groups, each under three loads for the stiffness, and writes
-``atlas.nc``, the package's ``data/atlas.nc``: one row per point. A repeated call with more points adds to the finished
-ones. The options ``--seed 2 --compare`` solve the points of another sequence, into another folder, and compare the
+``atlas.nc``, the package's ``data/atlas.nc``: one row per point. A repeated call with more points solves the new points
+only. The options ``--seed 2 --compare`` solve the points of another sequence, into another folder, and compare the
 package's atlas with them.
 """
 
@@ -20,10 +20,10 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 import contactstudy as cs
-from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, even_variation
+from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, transform_groups
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1e9
-"""Scales, which the dimensionless results do not depend on."""
+"""Scales without influence on the dimensionless results."""
 
 RANGES = {
     "length_over_a": (30.0, 200.0),
@@ -35,7 +35,7 @@ RANGES = {
 """Ranges of the groups ``L/a``, ``e/a``, ``A R/a**2`` and ``theta L R/(2 a**2)``, and of Poisson's ratio."""
 
 SCALES = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Scales of the coordinates over the first one's that are tried."""
+"""Tried scales of a coordinate, over the scale of the first coordinate."""
 
 HALF_WIDTH_FACTORS = (1.0, 0.95, 1.05)
 """Factors of pressure and half-width: the stiffness follows from the second and third, without stresses."""
@@ -44,7 +44,7 @@ NEAR_END = 2.0
 """Distance from the end over the half-width within which the largest value belongs to the end."""
 
 COVERED = 0.92
-"""Part of the left-out points whose residual the stated error covers: 95 % and more of other points."""
+"""Fraction of the points whose residual the stated error covers; of other points it covers 95 % and more."""
 
 SOLVER_ERRORS = {
     "peak_pressure_ratio": 9e-4,
@@ -57,23 +57,23 @@ SOLVER_ERRORS = {
 ``--points 32 --accuracy 0.002 --compare`` prints them."""
 
 
-def groups(count: int, seed: int) -> dict[str, np.ndarray]:
+def sample_groups(count: int, seed: int) -> dict[str, np.ndarray]:
     """Return the groups of the first points of a Sobol sequence, even in the coordinates of the atlas."""
-    unit = qmc.Sobol(len(GROUPS), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
-    low, high = even_variation(np.array([RANGES[name] for name in GROUPS]).T)
-    length, distance, crown, tilt, poisson = (low + unit * (high - low)).T
+    unit_points = qmc.Sobol(len(GROUPS), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
+    low, high = transform_groups(np.array([RANGES[name] for name in GROUPS]).T)
+    length, distance, crown, tilt, poisson = (low + unit_points * (high - low)).T
     return dict(zip(GROUPS, (np.exp(length), distance**2, np.exp(crown), tilt, poisson), strict=True))
 
 
-def half_widths(points: dict[str, np.ndarray]) -> np.ndarray:
+def compute_half_widths(points: dict[str, np.ndarray]) -> np.ndarray:
     """Half-widths of the line contacts, metres."""
     return 2 * PRESSURE * RADIUS * (1 - points["poisson"] ** 2) / YOUNG
 
 
 def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
     """Study of the points, each under three pressures: equal rollers in metres."""
-    points = {name: np.repeat(values, len(HALF_WIDTH_FACTORS)) for name, values in groups(count, seed).items()}
-    a, factor = half_widths(points), np.tile(HALF_WIDTH_FACTORS, count)
+    points = {name: np.repeat(values, len(HALF_WIDTH_FACTORS)) for name, values in sample_groups(count, seed).items()}
+    a, factor = compute_half_widths(points), np.tile(HALF_WIDTH_FACTORS, count)
     length = a * points["length_over_a"]
     return cs.Study(
         name="atlas",
@@ -106,14 +106,14 @@ def make_study(count: int, seed: int, accuracy: float) -> cs.Study:
     )
 
 
-def table_of(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
+def create_table(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
     """Return groups and dimensionless quantities of the points."""
     cases = {name: study[name].values.reshape(count, -1) for name in study}
-    solved = (cases["status"] == "ok").all(axis=1)
-    points = {name: values[solved] for name, values in groups(count, seed).items()}
-    a, p0 = half_widths(points), PRESSURE
-    values, approaches = {name: column[solved, 0] for name, column in cases.items()}, cases["approach"][solved].T
-    mean = values["normal_load"] / points["length_over_a"]
+    is_solved = (cases["status"] == "ok").all(axis=1)
+    points = {name: values[is_solved] for name, values in sample_groups(count, seed).items()}
+    a, p0 = compute_half_widths(points), PRESSURE
+    values, approaches = {name: column[is_solved, 0] for name, column in cases.items()}, cases["approach"][is_solved].T
+    mean_load = values["normal_load"] / points["length_over_a"]
     # Slope of the approach over the load, in logarithms of both
     slope = np.log(approaches[2] / approaches[1]) / (2 * np.log(HALF_WIDTH_FACTORS[2] / HALF_WIDTH_FACTORS[1]))
     columns = {
@@ -121,7 +121,7 @@ def table_of(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
         "peak_von_mises_ratio": values["peak_von_mises"] / p0,
         "approach_ratio": values["approach"] * RADIUS / a**2,
         "stiffness_ratio": np.pi * a**2 / (4 * values["approach"] * RADIUS * slope),
-        "end_load_ratio": values["end_load_last"] / mean,
+        "end_load_ratio": values["end_load_last"] / mean_load,
     }
     table = xr.Dataset({name: ("point", column) for name, column in (points | columns).items()})
     for name, limits in RANGES.items():
@@ -136,42 +136,44 @@ def table_of(study: xr.Dataset, count: int, seed: int) -> xr.Dataset:
     return table
 
 
-def with_residuals(table: xr.Dataset) -> xr.Dataset:
-    """Add scales, residuals of each point without itself, and the factors of the stated errors."""
+def add_residuals(table: xr.Dataset) -> xr.Dataset:
+    """Add scales, leave-one-out residuals of the points, and the factors of the stated errors."""
     for name in QUANTITIES:
         scales = [1.0] * len(GROUPS)
         trials: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
-        # One scale after the other, as the others are; only their ratios matter.
+        # One scale varies at a time; only the ratios of the scales have an influence.
         for group in [*range(1, len(GROUPS))] * 2:
             for scale in SCALES:
                 trial = (*scales[:group], scale, *scales[group + 1 :])
                 if trial not in trials:
                     table[name].attrs["scales"] = list(trial)
-                    trials[trial] = left_out(AtlasTable(table), name)
+                    trials[trial] = leave_one_out(AtlasTable(table), name)
             scales = list(min(trials, key=lambda trial: float(np.abs(trials[trial][0]).mean())))
         residuals, branch = trials[tuple(scales)]
         table[name].attrs["scales"] = scales
         table[f"{name}_residual"] = ("point", residuals)
         atlas = AtlasTable(table)
-        local = atlas.local_residual(name, atlas.points, branch, first=1)
-        beyond = np.sqrt(np.maximum(residuals**2 - table[name].attrs["solver_error"] ** 2, 0.0))
-        table[name].attrs["coverage_factor"] = float(np.quantile(beyond / local, COVERED, method="higher"))
+        local_residual = atlas.local_residual(name, atlas.points, branch, omitted_count=1)
+        excess = np.sqrt(np.maximum(residuals**2 - table[name].attrs["solver_error"] ** 2, 0.0))
+        table[name].attrs["coverage_factor"] = float(np.quantile(excess / local_residual, COVERED, method="higher"))
     return table
 
 
-def left_out(atlas: AtlasTable, name: str) -> tuple[np.ndarray, np.ndarray]:
+def leave_one_out(atlas: AtlasTable, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Difference of each point from the interpolation between the others, and its branch."""
-    samples, scaled = atlas.interpolated_samples(name), atlas.scale(name, atlas.points)
+    samples, coordinates = atlas.interpolated_samples(name), atlas.scale(name, atlas.points)
     values = atlas.branch_values(name, atlas.points)
-    for row, members in zip(values, atlas.branches(name), strict=True):
-        row[members] -= residuals_without_each(scaled[members], samples[members])
+    for row, mask in zip(values, atlas.branches(name), strict=True):
+        row[mask] -= compute_leave_one_out_residuals(coordinates[mask], samples[mask])
     return samples - values.max(axis=0), values.argmax(axis=0)
 
 
-def residuals_without_each(points: np.ndarray, samples: np.ndarray) -> np.ndarray:
+def compute_leave_one_out_residuals(points: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """Difference of each sample from the cubic radial functions and parabola through the others (Rippa, 1999)."""
     count = len(points)
-    monomials = [points[:, list(chosen)].prod(axis=1) for degree in range(3) for chosen in powers(points, degree)]
+    monomials = [
+        points[:, list(factors)].prod(axis=1) for degree in range(3) for factors in monomial_indices(points, degree)
+    ]
     matrix = np.zeros((count + len(monomials),) * 2)
     matrix[:count, :count] = cdist(points, points) ** 3
     matrix[:count, count:] = np.transpose(monomials)
@@ -180,8 +182,8 @@ def residuals_without_each(points: np.ndarray, samples: np.ndarray) -> np.ndarra
     return np.asarray(inverse @ samples / inverse.diagonal())
 
 
-def powers(points: np.ndarray, degree: int) -> Iterator[tuple[int, ...]]:
-    """Coordinates whose product is a monomial of the degree."""
+def monomial_indices(points: np.ndarray, degree: int) -> Iterator[tuple[int, ...]]:
+    """Yield the indices of the coordinates in each monomial of the degree."""
     return itertools.combinations_with_replacement(range(points.shape[1]), degree)
 
 
@@ -212,11 +214,11 @@ def main() -> None:
     options = parser.parse_args()
     study = make_study(options.points, options.seed, options.accuracy)
     cs.run_study(study, options.out, workers=options.workers, share=options.share and tuple(options.share))
-    solved = table_of(cs.open_study(options.out), options.points, options.seed)
+    solved = create_table(cs.open_study(options.out), options.points, options.seed)
     if options.compare:
         compare(solved)
     else:
-        with_residuals(solved).to_netcdf(options.out / "atlas.nc")
+        add_residuals(solved).to_netcdf(options.out / "atlas.nc")
 
 
 if __name__ == "__main__":

@@ -70,9 +70,9 @@ def solve_all(task: Task) -> xr.Dataset:
                 case = task.case(pressure, crown, model)
                 try:
                     film = cs.solve_film(case, accuracy=task.accuracy)
-                except cs.FilmError:  # closed at the ends
+                except cs.FilmError:  # no film at the ends
                     film = xr.Dataset()
-                dry = cs.solve(case, accuracy=0.05, stresses=False)
+                dry_contact = cs.solve(case, accuracy=0.05, stresses=False)
                 values = {
                     name: float(film.get(name, np.nan))
                     for key in ("end_film_ratio", "least_film", "least_film_middle")
@@ -81,33 +81,33 @@ def solve_all(task: Task) -> xr.Dataset:
                 if film:
                     # Slices beyond the contact carry no load and have no film.
                     values["slice_ratio"] = float(film["slice_film"].min() / film["slice_film"].median())
-                peak = {name: float(dry[name]) / pressure for name in ("peak_pressure", "peak_pressure_error")}
+                peak = {name: float(dry_contact[name]) / pressure for name in ("peak_pressure", "peak_pressure_error")}
                 coordinates = {"model": model, "max_pressure": pressure, "crown": crown}
                 rows.append(xr.Dataset(values | peak, coordinates).expand_dims([*coordinates]))
     return xr.combine_by_coords(rows, combine_attrs="drop").sel(model=[*MODELS])
 
 
-def choose(films: xr.Dataset) -> xr.Dataset:
+def choose_crowns(films: xr.Dataset) -> xr.Dataset:
     """Crowns with the thickest least film and with the lowest peak pressure, and the film that the latter loses."""
-    thickest = films["least_film"].fillna(0.0).idxmax("crown")
-    lowest = films["peak_pressure"].idxmin("crown")
-    best, lowest_case = (films.sel(crown=crown).drop_vars("crown") for crown in (thickest, lowest))
-    film_share = lowest_case["least_film"] / best["least_film"]
+    film_crown = films["least_film"].fillna(0.0).idxmax("crown")
+    pressure_crown = films["peak_pressure"].idxmin("crown")
+    film_case, pressure_case = (films.sel(crown=crown).drop_vars("crown") for crown in (film_crown, pressure_crown))
+    film_share = pressure_case["least_film"] / film_case["least_film"]
     return xr.Dataset(
         {
-            "crown_film": thickest,
-            "crown_pressure": lowest,
+            "crown_film": film_crown,
+            "crown_pressure": pressure_crown,
             "film_loss": 1 - film_share,
-            "film_loss_error": (lowest_case["least_film_error"] + film_share * best["least_film_error"])
-            / best["least_film"],
-            "pressure_gain": best["peak_pressure"] / lowest_case["peak_pressure"] - 1,
+            "film_loss_error": (pressure_case["least_film_error"] + film_share * film_case["least_film_error"])
+            / film_case["least_film"],
+            "pressure_gain": film_case["peak_pressure"] / pressure_case["peak_pressure"] - 1,
         }
     )
 
 
-def table(films: xr.Dataset) -> str:
+def format_table(films: xr.Dataset) -> str:
     """Film ratios for the crown of each design pressure, middle film ratios of full films, and the two best crowns."""
-    choice = choose(films)
+    choice = choose_crowns(films)
     lines = [
         "| p0, GPa | ends | least over middle film | slices | middle lambda of a full film | crown: film, pressure "
         "| film lost | pressure gained |",
@@ -115,15 +115,15 @@ def table(films: xr.Dataset) -> str:
     ]
     for pressure in films["max_pressure"].values:
         for model in films["model"].values:
-            case, best = (data.sel(max_pressure=pressure, model=model) for data in (films, choice))
+            case, choices = (data.sel(max_pressure=pressure, model=model) for data in (films, choice))
             design = case.sel(crown=1.0)
             ratio = float(design["end_film_ratio"])
             lines.append(
                 f"| {1e-9 * pressure:g} | {model} | {ratio:.3f} ± {float(design['end_film_ratio_error']):.3f} "
                 f"| {float(design['slice_ratio']):.2f} | {FULL_FILM / ratio:.1f} "
-                f"| {float(best['crown_film']):g}, {float(best['crown_pressure']):g} "
-                f"| {100 * float(best['film_loss']):.1f} ± {100 * float(best['film_loss_error']):.1f} % "
-                f"| {100 * float(best['pressure_gain']):.1f} % |"
+                f"| {float(choices['crown_film']):g}, {float(choices['crown_pressure']):g} "
+                f"| {100 * float(choices['film_loss']):.1f} ± {100 * float(choices['film_loss_error']):.1f} % "
+                f"| {100 * float(choices['pressure_gain']):.1f} % |"
             )
     return "\n".join(lines)
 
@@ -155,7 +155,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     films = solve_all(Task())
     folder.mkdir(parents=True, exist_ok=True)
     films.to_netcdf(folder / "films.nc")
-    print(table(films))
+    print(format_table(films))
     draw(films).savefig(folder / "film_profiles.png", dpi=150)
 
 

@@ -1,14 +1,14 @@
-"""Draw how wrong the half-space and the quick fixes for free ends are, from the study regime_map.toml.
+"""Draw the errors of the half-space and of approximate models of free ends, from the study regime_map.toml.
 
 Usage, after ``contactstudy run studies/regime_map.toml``: ``python studies/regime_map.py [FOLDER] [--finer]``, default
 ``results/regime_map``. Writes ``errors.nc``, ``limits.csv`` and a figure for each crown into the folder, and prints
 the distances beyond which the errors stay small. With ``--finer`` it solves some cases again to a
 quarter of the accuracy and prints the change of the errors.
 
-The ratio of e to the body's length decides, not e over a: once the free ends are a quarter of the length away, the
-half-space is right within 2.6 % from L = 32 a on, 8 % at 4 a, for every crown; half as far it is 9 to 33 % wrong. A
-single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is within 1 % in pressure,
-1.2 % in load and 4.3 % in stress everywhere. The report of the studies has the details.
+The errors depend on the ratio of e to the body's length: with free ends a quarter of the length away, the
+half-space errs by 2.6 % from L = 32 a on and by 8 % at 4 a, for every crown; at half that distance by 9 to 33 %. A
+single pair of mirrored loads with two separate vertical half-spaces, the published scheme, errs by at most 1 % in
+pressure, 1.2 % in load and 4.3 % in stress.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MODELS = {
     "single mirror": {"body": "finite-length", "model": "single-mirror"},
     "quarter space": {"body": "quarter-space", "model": "exact"},
 }
-"""Words of the study for each model, by its title."""
+"""Parameters of the study that select each model, by the model's title."""
 
 QUANTITIES = {
     "peak_pressure_first": "largest pressure",
@@ -42,7 +42,7 @@ QUANTITIES = {
 """Compared quantities; pressure and load of the half at end I, because a quarter space has one end."""
 
 LIMITS = (5.0, 1.0)
-"""Errors, in percent, below which one may stop worrying."""
+"""Limits of the errors, in percent."""
 
 
 def select_quantities(study: xr.Dataset) -> xr.Dataset:
@@ -52,8 +52,8 @@ def select_quantities(study: xr.Dataset) -> xr.Dataset:
     return study[list(QUANTITIES)].assign_coords(length_over_a=length)
 
 
-def stated_errors(study: xr.Dataset) -> str:
-    """Largest stated error of the settled quantities, in words."""
+def describe_stated_errors(study: xr.Dataset) -> str:
+    """Largest stated error of each quantity, in words."""
     parts = []
     for name in QUANTITIES:
         finite = np.isfinite(study[name]) & (study[name] > 0)
@@ -62,11 +62,11 @@ def stated_errors(study: xr.Dataset) -> str:
     return f"largest stated error of the {', of the '.join(parts)}"
 
 
-def errors(values: xr.Dataset) -> xr.Dataset:
+def compute_errors(values: xr.Dataset) -> xr.Dataset:
     """Error of each model against the exact ends, in percent; infinite where only the model's pressure is singular."""
     exact = select_model(values, {"body": "finite-length", "model": "exact"})
-    parts = [100 * (select_model(values, selection) / exact - 1) for selection in MODELS.values()]
-    result = xr.concat(parts, xr.DataArray(list(MODELS), dims="approximation", name="approximation"))
+    approximations = [100 * (select_model(values, selection) / exact - 1) for selection in MODELS.values()]
+    result = xr.concat(approximations, xr.DataArray(list(MODELS), dims="approximation", name="approximation"))
     # The largest stress of a quarter space may lie where the other body ends.
     comparable = result["approximation"] != "quarter space"
     result["peak_von_mises"] = result["peak_von_mises"].where(comparable)
@@ -86,32 +86,32 @@ def select_model(values: xr.Dataset, selection: dict[str, str]) -> xr.Dataset:
     return values.isel(body_and_model=number, drop=True).reset_coords(drop=True)
 
 
-def limits(error: xr.Dataset) -> xr.Dataset:
+def find_limits(error: xr.Dataset) -> xr.Dataset:
     """Smallest e/a of the study beyond which the errors stay below each limit; NaN without such a distance."""
-    size = abs(error)
+    magnitude = abs(error)
     distances = error["e_over_a"]
-    running = [size.sel(e_over_a=slice(e, None)).max("e_over_a") for e in distances.values]
-    worst = xr.concat(running, distances)
+    beyond_maxima = [magnitude.sel(e_over_a=slice(e, None)).max("e_over_a") for e in distances.values]
+    largest = xr.concat(beyond_maxima, distances)
     return xr.concat(
-        [distances.where(worst < limit).min("e_over_a") for limit in LIMITS],
+        [distances.where(largest < limit).min("e_over_a") for limit in LIMITS],
         xr.DataArray(list(LIMITS), dims="below", name="below", attrs={"units": "percent"}),
     )
 
 
-def table(error: xr.Dataset) -> str:
+def format_table(error: xr.Dataset) -> str:
     """Markdown: e/a beyond which errors stay below 5 and 1 % for every crown and friction."""
     largest = abs(error).max(["profile", "friction"])
-    reach = largest["e_over_a"].where(largest["end_load_first"].notnull()).max(["e_over_a", "approximation"])
+    max_distance = largest["e_over_a"].where(largest["end_load_first"].notnull()).max(["e_over_a", "approximation"])
     lengths = [f"L = {length:g} a" for length in error["length_over_a"].values]
     lines = [f"| model | quantity | {' | '.join(lengths)} |", "|---" * (2 + len(lengths)) + "|"]
     for model in MODELS:
         for name, meaning in QUANTITIES.items():
             if largest[name].sel(approximation=model).isnull().all():
                 continue
-            values = limits(largest)[name].sel(approximation=model).transpose("gamma", "below").values
+            values = find_limits(largest)[name].sel(approximation=model).transpose("gamma", "below").values
             cells = [
                 " / ".join(f"{e:g}" if np.isfinite(e) else f"> {last:g}" for e in pair)
-                for pair, last in zip(values, reach.values, strict=True)
+                for pair, last in zip(values, max_distance.values, strict=True)
             ]
             lines.append(f"| {model} | {meaning.replace('$', '')} | {' | '.join(cells)} |")
     return "\n".join(lines)
@@ -127,12 +127,12 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
     for row, model in zip(axes, MODELS, strict=True):
         for ax, name in zip(row, QUANTITIES, strict=True):
             panel = error[name].sel(approximation=model, friction=0.0, profile=profile).transpose("gamma", "e_over_a")
-            size = np.ma.masked_where(np.isnan(panel.values), np.minimum(abs(panel.values), 0.99 * bands[-1]))
-            mesh = ax.pcolormesh(size, cmap=colours, norm=BoundaryNorm(bands, colours.N))
+            magnitude = np.ma.masked_where(np.isnan(panel.values), np.minimum(abs(panel.values), 0.99 * bands[-1]))
+            mesh = ax.pcolormesh(magnitude, cmap=colours, norm=BoundaryNorm(bands, colours.N))
             # Lines that follow the cells' borders: the values repeated on a much finer grid.
-            fine = np.repeat(np.repeat(size, 40, axis=0), 40, axis=1)
-            up, across = ((np.arange(n) + 0.5) / 40 for n in fine.shape)
-            ax.contour(across, up, fine, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6)
+            fine_image = np.repeat(np.repeat(magnitude, 40, axis=0), 40, axis=1)
+            y, x = ((np.arange(size) + 0.5) / 40 for size in fine_image.shape)
+            ax.contour(x, y, fine_image, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6)
             for (i, j), value in np.ndenumerate(panel.values):
                 if not np.isnan(value):
                     colour = "white" if abs(value) > 5 else "black"
@@ -154,7 +154,7 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
     return figure
 
 
-def finer(study: cs.Study) -> cs.Study:
+def refine_study(study: cs.Study) -> cs.Study:
     """Return some of the study's cases, without friction, solved to a quarter of the accuracy."""
     sweep = {**study.sweep, "e_over_a": [0.0, 2.0, 8.0], "friction": [0.0], "gamma": [0.026, 0.104, 0.832]}
     base = {**study.base, "accuracy": study.base["accuracy"] / 4}
@@ -163,26 +163,26 @@ def finer(study: cs.Study) -> cs.Study:
 
 def main() -> None:
     """Evaluate and draw the study, or check its cells."""
-    parser = argparse.ArgumentParser(description="Errors of the half-space and of quick fixes for free ends.")
+    parser = argparse.ArgumentParser(description="Errors of the half-space and of approximate models of free ends.")
     parser.add_argument("folder", type=Path, nargs="?", default=Path("results/regime_map"))
     parser.add_argument("--finer", action="store_true", help="solve some cases more accurately and compare")
     options = parser.parse_args()
     folder: Path = options.folder
     study = cs.open_study(folder)
-    error = errors(select_quantities(study))
+    error = compute_errors(select_quantities(study))
     if options.finer:
-        cs.run_study(finer(cs.Study.from_toml(Path(__file__).with_suffix(".toml"))), folder / "finer", workers=2)
-        change = abs(errors(select_quantities(cs.open_study(folder / "finer"))) - error)
+        cs.run_study(refine_study(cs.Study.from_toml(Path(__file__).with_suffix(".toml"))), folder / "finer", workers=2)
+        change = abs(compute_errors(select_quantities(cs.open_study(folder / "finer"))) - error)
         for model in MODELS:
-            largest = change.where(np.isfinite(change)).sel(approximation=model).max()
-            print(f"{model}: errors change by at most", *(f"{float(largest[n]):.2f} % ({n})" for n in QUANTITIES))
+            max_change = change.where(np.isfinite(change)).sel(approximation=model).max()
+            print(f"{model}: errors change by at most", *(f"{float(max_change[n]):.2f} % ({n})" for n in QUANTITIES))
         return
     error.to_netcdf(folder / "errors.nc")
-    limits(error).to_dataframe().to_csv(folder / "limits.csv")
+    find_limits(error).to_dataframe().to_csv(folder / "limits.csv")
     for profile in map(str, error["profile"].values):
         draw(error, profile).savefig(folder / f"{profile.replace(' ', '_')}.png", dpi=110)
-    print(table(error))
-    print(f"\n{stated_errors(study)}")
+    print(format_table(error))
+    print(f"\n{describe_stated_errors(study)}")
     print(f"\nwrote errors.nc, limits.csv and a figure for each crown in {folder}")
 
 

@@ -3,7 +3,7 @@
 Usage: ``python studies/residual_stress.py [--out FOLDER]``; about a minute. Writes ``residual_stress.nc`` and
 ``residual_stress.png`` and prints a table.
 
-A slightly crowned roller that ends with the body rolls over it again and again. Its load is 15 % above Melan's limit
+A slightly crowned roller with ends flush with the body's rolls over it many times. Its load is 15 % above Melan's limit
 with residual stress along rolling. The material hardens a little. Stresses and depths are over k and a.
 """
 
@@ -26,7 +26,7 @@ COMPONENTS = {"sigma_yy": "along rolling", "sigma_xx": "along the axis"}
 """Residual stresses of the figure."""
 
 NEAR_END = 2.0
-"""Distance from the free end, over a, within which its largest flow is looked for."""
+"""Largest distance from the free end, over a, of the largest flow near the end."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,12 +66,12 @@ class Task:
     def points(self) -> dict[str, np.ndarray]:
         """Positions of the stresses: middles of cells that are narrow at the ends and near the top."""
         a = self.case.hertz_half_width
-        x_dim = 0.5 * self.length * (1 - np.cos(np.linspace(0, np.pi, self.cells_x + 1)))
-        down = self.depth * a * np.linspace(0, 1, self.cells_z + 1)
+        x_edges = 0.5 * self.length * (1 - np.cos(np.linspace(0, np.pi, self.cells_x + 1)))
+        z_edges = self.depth * a * np.linspace(0, 1, self.cells_z + 1)
         return {
-            "x": 0.5 * (x_dim[1:] + x_dim[:-1]),
+            "x": 0.5 * (x_edges[1:] + x_edges[:-1]),
             "y": self.window * a * np.linspace(-1, 1, self.positions_y),
-            "z": 0.5 * (down[1:] + down[:-1]),
+            "z": 0.5 * (z_edges[1:] + z_edges[:-1]),
         }
 
 
@@ -100,17 +100,17 @@ def roll_passes(task: Task) -> xr.Dataset:
 
 
 def select_depths(residual: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Depths on the free end, where most flows near it, and in the middle."""
+    """Depth profiles on the free end, at the largest flow near the end, and in the middle."""
     strain = residual["plastic_strain"].isel(pass_number=-1).max("z")
-    near = int(strain.where(strain["x"] < NEAR_END).argmax("x"))
+    flow_index = int(strain.where(strain["x"] < NEAR_END).argmax("x"))
     return {
         "on the free end": residual.isel(x=0),
-        f"{float(residual['x'][near]):.1f} a inside": residual.isel(x=near),
+        f"{float(residual['x'][flow_index]):.1f} a inside": residual.isel(x=flow_index),
         "in the middle": residual.isel(x=residual.sizes["x"] // 2),
     }
 
 
-def flow(profile: xr.Dataset) -> xr.DataArray:
+def compute_flow(profile: xr.Dataset) -> xr.DataArray:
     """Largest equivalent plastic strain that each pass adds."""
     strain = profile["plastic_strain"]
     return xr.concat([strain.isel(pass_number=[0]), strain.diff("pass_number")], "pass_number").max("z")
@@ -130,13 +130,13 @@ def draw(residual: xr.Dataset) -> plt.Figure:
     section = residual["sigma_yy"].isel(pass_number=-1).transpose("z", "x")
     bound = np.ceil(20 * float(abs(section).max())) / 20
     levels = np.linspace(-bound, bound, 22)
-    filled = axes[1, 0].contourf(residual["x"], residual["z"], section, levels=levels, cmap="RdBu_r")
+    contours = axes[1, 0].contourf(residual["x"], residual["z"], section, levels=levels, cmap="RdBu_r")
     label = "residual stress along rolling over $k$"
-    figure.colorbar(filled, ax=axes[1, 0], label=label, ticks=np.linspace(-bound, bound, 7))
+    figure.colorbar(contours, ax=axes[1, 0], label=label, ticks=np.linspace(-bound, bound, 7))
     axes[1, 0].set(xlabel="distance from the free end, $x/a$", ylabel="$z/a$")
     axes[1, 0].invert_yaxis()
     for (label, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
-        increments = flow(profile)
+        increments = compute_flow(profile)
         axes[1, 1].semilogy(
             increments["pass_number"], increments.where(increments > 0), marker="o", label=label, **style
         )
@@ -144,14 +144,14 @@ def draw(residual: xr.Dataset) -> plt.Figure:
     return figure
 
 
-def table(residual: xr.Dataset) -> str:
-    """Markdown: extremes of the residual stresses at both places, and the flow of the first and the last pass."""
-    heads = [f"{direction}, lowest and highest over k" for direction in COMPONENTS.values()]
-    lines = [f"| place | {' | '.join(heads)} | strain, first pass | strain, last pass |", "|---" * 5 + "|"]
+def format_table(residual: xr.Dataset) -> str:
+    """Markdown: extremes of the residual stresses at each place, and the flow of the first and the last pass."""
+    headings = [f"{direction}, lowest and highest over k" for direction in COMPONENTS.values()]
+    lines = [f"| place | {' | '.join(headings)} | strain, first pass | strain, last pass |", "|---" * 5 + "|"]
     for label, profile in select_depths(residual).items():
         last = profile.isel(pass_number=-1)
         cells = [f"{float(last[name].min()):.2f} to {float(last[name].max()):.2f}" for name in COMPONENTS]
-        increments = flow(profile)
+        increments = compute_flow(profile)
         cells += [f"{float(increments[number]):.1e}" for number in (0, -1)]
         lines.append(f"| {label} | {' | '.join(cells)} |")
     return "\n".join(lines)
@@ -168,7 +168,7 @@ def main() -> None:
     draw(residual).savefig(options.out / "residual_stress.png", dpi=160)
     print(f"shakedown limit p0/k = {float(residual['shakedown_limit']):.2f}")
     print(f"k = {float(residual['shear_yield_stress']) / 1e6:.0f} MPa\n")
-    print(table(residual))
+    print(format_table(residual))
 
 
 if __name__ == "__main__":

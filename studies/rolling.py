@@ -25,7 +25,7 @@ from contactstudy.plots.style import MARKERS, line_styles
 
 NAMES = ("traction_curve", "axial_slip", "spin", "partial_slip")
 
-BELOW = 0.19
+MIN_DEPTH = 0.19
 """Least depth over a of the compared von Mises stresses."""
 
 
@@ -35,14 +35,14 @@ def marked_styles(count: int) -> Iterator[dict[str, Any]]:
         yield style | {"marker": marker, "markersize": 5}
 
 
-def full_sliding(study: xr.Dataset) -> xr.DataArray:
+def sliding_force(study: xr.Dataset) -> xr.DataArray:
     """Force of full sliding, N."""
     return study["friction"] * study["normal_load"]
 
 
 def draw_curve(ax: Axes, study: xr.Dataset) -> None:
     """Traction curves: free ends flush and inside the face, and half-spaces."""
-    ratio = study["force_y"] / full_sliding(study)
+    ratio = study["force_y"] / sliding_force(study)
     a = study["hertz_half_width"]
     styles = marked_styles(6)
     for length in study["roller_length"].values:
@@ -58,12 +58,12 @@ def draw_curve(ax: Axes, study: xr.Dataset) -> None:
 
 def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
     """Work lost and part that slips when a roller of the same material rolls freely."""
-    slips = 1 - study["sticking_part"]
-    loss = study["friction_work"] / full_sliding(study)
-    error = 1e3 * study["friction_work_error"] / full_sliding(study)
+    slipping_part = 1 - study["sticking_part"]
+    loss = study["friction_work"] / sliding_force(study)
+    error = 1e3 * study["friction_work_error"] / sliding_force(study)
     styles = marked_styles(3)
     ax.errorbar(study["e_over_a"], 1e3 * loss, error, label="work lost over $f W$, times $10^3$", **next(styles))
-    ax.plot(study["e_over_a"], slips, label="part of the contact that slips", **next(styles))
+    ax.plot(study["e_over_a"], slipping_part, label="part of the contact that slips", **next(styles))
     creepage = 1e3 * study["longitudinal_creepage"]
     ax.plot(study["e_over_a"], creepage, label=r"longitudinal creepage, $10^3\,\xi$", **next(styles))
     ax.set_xlabel("distance of the roller's ends, $e/a$")
@@ -71,7 +71,7 @@ def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
 
 def draw_spin(ax: Axes, study: xr.Dataset) -> None:
     """Moment over full sliding's in opposite directions from mid-length, free ends and half-spaces."""
-    ratio = study["moment_z"] / (0.25 * full_sliding(study) * study["contact_length"])
+    ratio = study["moment_z"] / (0.25 * sliding_force(study) * study["contact_length"])
     styles = marked_styles(4)
     for length in study["roller_length"].values:
         size = f"{float(length / study['hertz_half_width'].max()):.0f}a"
@@ -85,21 +85,21 @@ def draw_spin(ax: Axes, study: xr.Dataset) -> None:
 
 def draw_stress(ax: Axes, study: xr.Dataset) -> None:
     """Largest von Mises stress below the surface near a free end, and tension on the surface there."""
-    swept = study["longitudinal_creepage"]
+    creepage = study["longitudinal_creepage"]
     p0 = study["hertz_max_pressure"]
-    near = study.sel(x_over_a=slice(0.0, 1.0))
+    near_end = study.sel(x_over_a=slice(0.0, 1.0))
     # A transverse traction that ends at the edge makes the stress unbounded at the corner.
-    below = near["von_mises"].sel(z_over_a=slice(BELOW, None))
-    mises = below.max(("x_over_a", "y_field_over_a", "z_over_a")) / p0
-    tension = near["sigma_yy"].sel(z_over_a=0.0).max(("x_over_a", "y_field_over_a")) / p0
+    stress = near_end["von_mises"].sel(z_over_a=slice(MIN_DEPTH, None))
+    max_stress = stress.max(("x_over_a", "y_field_over_a", "z_over_a")) / p0
+    tension = near_end["sigma_yy"].sel(z_over_a=0.0).max(("x_over_a", "y_field_over_a")) / p0
     styles = marked_styles(4)
-    ticks = np.arange(swept.size)
+    ticks = np.arange(creepage.size)
     for friction in study["friction"].values:
-        for values, quantity in ((mises, "von Mises below $0.2a$"), (tension, "tension on the surface")):
+        for values, quantity in ((max_stress, "von Mises below $0.2a$"), (tension, "tension on the surface")):
             curve = values.sel(friction=friction)
             ax.plot(ticks, curve, label=f"{quantity}, $f$ = {friction:g}", **next(styles))
     ax.set_ylim(0.0, 1.15)
-    ax.set_xticks(ticks, [f"{1e3 * value:g}" for value in swept.values])
+    ax.set_xticks(ticks, [f"{1e3 * value:g}" for value in creepage.values])
     ax.set_xlabel(r"creepage, $10^3\,\xi$ (the last is full sliding)")
     ax.set_ylabel("within $a$ of the free end, over $p_0$")
 

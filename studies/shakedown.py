@@ -29,7 +29,7 @@ LINE_CONTACT = {
     "along rolling": ("shakedown_limit", False),
     "along rolling and axis (Johnson)": ("shakedown_limit", True),
 }
-"""Limits of the line contact by the residual stress that they count on: name, and whether that along the axis helps."""
+"""Limits of the line contact by residual stress: name of the limit, and whether stress along the axis contributes."""
 
 LEVELS = np.linspace(1.0, 3.4, 25)
 """Values of the map."""
@@ -50,34 +50,36 @@ def line_contact(frictions: np.ndarray, poisson: float) -> xr.Dataset:
 
 
 def stated_errors(study: xr.Dataset) -> xr.DataArray:
-    """Stated error of the shakedown limit over it."""
+    """Relative stated error of the shakedown limit."""
     return (study["shakedown_limit_error"] / study["shakedown_limit"]).rename("error")
 
 
-def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
+def draw(study: xr.Dataset, limits: xr.Dataset) -> plt.Figure:
     """Limits over friction and distance: a map, and lines with the line contact's limits, for each crown."""
     crowns = study["profile"].values
     figure, axes = plt.subplots(2, crowns.size, figsize=(8.0, 7.4), layout="constrained", squeeze=False)
-    for crown, upper, lower in zip(crowns, *axes, strict=True):
+    for crown, map_ax, line_ax in zip(crowns, *axes, strict=True):
         limit = study["shakedown_limit"].sel(profile=crown).transpose("e_over_a", "friction")
         friction, distance = limit["friction"].values, limit["e_over_a"].values
-        filled = upper.contourf(friction, distance, limit.values, levels=LEVELS, cmap="viridis", extend="both")
-        lines = upper.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
-        upper.clabel(lines, fmt="%.1f", fontsize="small")
-        upper.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
+        contours = map_ax.contourf(friction, distance, limit.values, levels=LEVELS, cmap="viridis", extend="both")
+        lines = map_ax.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
+        map_ax.clabel(lines, fmt="%.1f", fontsize="small")
+        map_ax.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
         for value, style in zip(distance, line_styles(distance.size), strict=True):
-            lower.plot(friction, limit.sel(e_over_a=value), label=f"$e$ = {value:g} $a$", **style)
+            line_ax.plot(friction, limit.sel(e_over_a=value), label=f"$e$ = {value:g} $a$", **style)
         for name, dashes in zip(LINE_CONTACT, (":", "--", "-"), strict=True):
-            lower.plot(line["friction"], line[name], color="black", linestyle=dashes, label=f"line contact, {name}")
-        lower.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
-    figure.colorbar(filled, ax=axes[0], label="$p_0/k$ at shakedown")
+            line_ax.plot(
+                limits["friction"], limits[name], color="black", linestyle=dashes, label=f"line contact, {name}"
+            )
+        line_ax.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
+    figure.colorbar(contours, ax=axes[0], label="$p_0/k$ at shakedown")
     figure.legend(
         *axes[1, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small", frameon=False
     )
     return figure
 
 
-def table(study: xr.Dataset, line: xr.Dataset) -> str:
+def format_table(study: xr.Dataset, line_limits: xr.Dataset) -> str:
     """Markdown: limits by crown and distance, and of the line contact, for every second friction."""
     frictions = study["friction"].values[::2]
     lines = [
@@ -93,7 +95,7 @@ def table(study: xr.Dataset, line: xr.Dataset) -> str:
             ]
             lines.append(f"| {crown} | {distance:g} | {' | '.join(cells)} |")
     for name in LINE_CONTACT:
-        cells = [f"{value:.2f}" for value in line[name].sel(friction=frictions).values]
+        cells = [f"{value:.2f}" for value in line_limits[name].sel(friction=frictions).values]
         lines.append(f"| line contact, {name} | | {' | '.join(cells)} |")
     return "\n".join(lines)
 
@@ -103,13 +105,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Shakedown limit between free ends.")
     parser.add_argument("folder", type=Path, nargs="?", default=Path("results/shakedown"))
     folder: Path = parser.parse_args().folder
-    opened = cs.open_study(folder)
-    study = opened[["shakedown_limit", "shakedown_limit_error", "first_yield_limit"]].load()
-    poisson = json.loads(opened.attrs["contactstudy_study"])["base"]["poisson"]
-    line = line_contact(study["friction"].values, poisson)
+    opened_study = cs.open_study(folder)
+    study = opened_study[["shakedown_limit", "shakedown_limit_error", "first_yield_limit"]].load()
+    poisson = json.loads(opened_study.attrs["contactstudy_study"])["base"]["poisson"]
+    line_limits = line_contact(study["friction"].values, poisson)
     study.to_dataframe().to_csv(folder / "shakedown_limits.csv")
-    draw(study, line).savefig(folder / "shakedown.png", dpi=100)
-    print(table(study, line))
+    draw(study, line_limits).savefig(folder / "shakedown.png", dpi=100)
+    print(format_table(study, line_limits))
     errors = stated_errors(study).values
     finite_errors = errors[np.isfinite(errors)]
     unestimated = errors.size - finite_errors.size

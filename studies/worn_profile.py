@@ -22,11 +22,11 @@ import contactstudy as cs
 from contactstudy.plots.style import line_styles
 from contactstudy.wear import wear_in, worn_profile
 
-BESIDE_END = 0.05
+MIN_END_DISTANCE = 0.05
 """Least distance from the roller's end, over the half-width, of compared pressures; the ends are singular."""
 
 WINDOW, CELLS_Y = 2.6, 64
-"""Half-width of the window over the Hertz half-width, and its cells: sharp ends make a contact wide."""
+"""Half-width of the window over the Hertz half-width, and its cells: sharp ends widen a contact."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,89 +69,89 @@ class Task:
 
 
 def wear_roller(task: Task) -> xr.Dataset:
-    """Wear at the design load, kept at some mean depths."""
+    """Wear at the design load, with results at some mean depths."""
     case = task.case()
     area = 2 * np.pi * task.radius * task.length
     distances = [0.0, *(area * depth / (task.coefficient * case.normal_load) for depth in task.mean_depths)]
     return wear_in(case, task.coefficient, distance=distances)
 
 
-def profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:
+def collect_profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:
     """Return the compared profiles by name."""
     names = ["sharp", *(f"worn by {1e6 * depth:g} µm" for depth in task.mean_depths)]
     case = task.case()
-    pressures: dict[str, cs.profiles.Profile] = {
+    worn_profiles: dict[str, cs.profiles.Profile] = {
         name: worn_profile(case, worn, float(distance))
         for name, distance in zip(names, worn["distance"].values, strict=True)
     }
-    return pressures | {"best crown": task.crown}
+    return worn_profiles | {"best crown": task.crown}
 
 
 def press_profiles(task: Task, worn: xr.Dataset) -> xr.Dataset:
     """Load per length and largest pressure of every profile under every load, on the cells of the wear."""
     edges = np.append(worn["x_bounds"].values[:, 0], worn["x_bounds"].values[-1, 1])
-    compared = profiles(task, worn)
-    of_profiles = []
-    for profile in compared.values():
-        of_loads = []
+    compared_profiles = collect_profiles(task, worn)
+    results = []
+    for profile in compared_profiles.values():
+        load_results = []
         for pressure in task.pressures:
             half_window = WINDOW * task.case(pressure=pressure).hertz_half_width
             grid = cs.Grid.from_edges(edges, (-half_window, half_window), CELLS_Y)
-            of_loads.append(
+            load_results.append(
                 xr.concat(
                     [_press_profile(task.case(profile, pressure, offset), grid) for offset in task.offsets],
                     xr.Variable("offset", list(task.offsets), {"units": "m"}),
                 )
             )
-        of_profiles.append(xr.concat(of_loads, xr.Variable("max_pressure", list(task.pressures), {"units": "Pa"})))
-    result = xr.concat(of_profiles, xr.Variable("profile", list(compared)))
+        results.append(xr.concat(load_results, xr.Variable("max_pressure", list(task.pressures), {"units": "Pa"})))
+    result = xr.concat(results, xr.Variable("profile", list(compared_profiles)))
     result.attrs = {"Conventions": "CF-1.11", "title": "a worn-in roller against the best crown"}
     return result
 
 
 def _press_profile(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
     """Load per length over the mean one, and pressure over p0 beside the ends and between them."""
-    pressures = cs.solve(case, grid, stresses=False)
-    line_load = cs.analysis.line_load(pressures) * case.contact_length / case.normal_load
+    result = cs.solve(case, grid, stresses=False)
+    line_load = cs.analysis.line_load(result) * case.contact_length / case.normal_load
     start, stop = case.contact_range
-    distance = np.minimum(pressures["x"] - start, stop - pressures["x"]) >= BESIDE_END * case.hertz_half_width
-    largest = pressures["pressure"].max("y").where(distance).max() / case.max_pressure
+    is_compared = np.minimum(result["x"] - start, stop - result["x"]) >= MIN_END_DISTANCE * case.hertz_half_width
+    max_pressure = result["pressure"].max("y").where(is_compared).max() / case.max_pressure
     return xr.Dataset(
         {
             "relative_load": line_load.assign_attrs(units="1", long_name="load per length over the mean"),
-            "largest_pressure": largest.assign_attrs(units="1", long_name="largest pressure over p0 off the ends"),
+            "largest_pressure": max_pressure.assign_attrs(units="1", long_name="largest pressure over p0 off the ends"),
         }
     )
 
 
 def draw(task: Task, worn: xr.Dataset, pressures: xr.Dataset) -> plt.Figure:
-    """Profiles, and the load per length near an end at the load that they wore at and at a higher one."""
+    """Profiles, and the load per length near an end at the load of the wear and at a higher load."""
     figure, axes = plt.subplots(3, 1, figsize=(5.4, 8.4), layout="constrained")
-    compared = profiles(task, worn)
+    compared_profiles = collect_profiles(task, worn)
     x = 0.5 * task.length * np.linspace(-1, 1, 2001)[1:-1]
-    styles = line_styles(len(compared))
-    drops = {name: 1e6 * profile.drop(x, task.length) for name, profile in compared.items()}
+    styles = line_styles(len(compared_profiles))
+    drops = {name: 1e6 * profile.drop(x, task.length) for name, profile in compared_profiles.items()}
     for (name, drop), style in zip(drops.items(), styles, strict=True):
         axes[0].plot(1e3 * x, drop - drop[x.size // 2], label=name, **style)
-    highest = min((drop - drop[x.size // 2]).min() for drop in drops.values())
-    axes[0].set(xlabel="distance from mid-length (mm)", ylabel="drop below mid-length (µm)", ylim=(0.8, 1.1 * highest))
+    min_drop = min((drop - drop[x.size // 2]).min() for drop in drops.values())
+    axes[0].set(xlabel="distance from mid-length (mm)", ylabel="drop below mid-length (µm)", ylim=(0.8, 1.1 * min_drop))
     axes[0].legend(frameon=False, fontsize="small", loc="lower center")
     for ax, pressure in zip(axes[1:], task.pressures[-2:], strict=True):
-        for name, style in zip(compared, styles, strict=True):
+        for name, style in zip(compared_profiles, styles, strict=True):
             line = pressures["relative_load"].sel(profile=name, max_pressure=pressure, offset=task.offsets[0])
             distance = (line["x"].values - task.end_distance) / task.case().hertz_half_width
-            near = (distance > BESIDE_END) & (distance < 8)
-            ax.plot(distance[near], line.values[near], **style)
+            is_near = (distance > MIN_END_DISTANCE) & (distance < 8)
+            ax.plot(distance[is_near], line.values[is_near], **style)
         ax.set(xlabel="distance from the end over $a$ at 1.5 GPa", ylabel="load per length over the mean")
         ax.set(title=f"$p_0$ = {pressure / 1e9:g} GPa", ylim=(0.0, 2.0), xscale="log")
     return figure
 
 
-def table(pressures: xr.Dataset) -> str:
+def format_table(pressures: xr.Dataset) -> str:
     """Markdown: largest pressure off the ends, by load and its position."""
     loads = [(float(load), float(offset)) for offset in pressures["offset"] for load in pressures["max_pressure"]]
-    heads = [f"{load / 1e9:g} GPa{f', {1e3 * offset:+g} mm' if offset else ''}" for load, offset in loads]
-    lines = [f"| profile | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
+    headings = [f"{load / 1e9:g} GPa{f', {1e3 * offset:+g} mm' if offset else ''}" for load, offset in loads]
+    lines = [f"| profile | {' | '.join(headings)} |", "|---" * (len(headings) + 1) + "|"]
     for name in pressures["profile"].values:
         cells = [
             f"{float(pressures['largest_pressure'].sel(profile=name, max_pressure=load, offset=offset)):.2f}"
@@ -162,7 +162,7 @@ def table(pressures: xr.Dataset) -> str:
 
 
 def main() -> None:
-    """Wear, judge, draw, write."""
+    """Wear, press, draw, write."""
     parser = argparse.ArgumentParser(description="A roller with sharp ends worn in, against the best crown.")
     parser.add_argument("--out", type=Path, default=Path("results/worn_profile"))
     options = parser.parse_args()
@@ -173,7 +173,7 @@ def main() -> None:
     worn.to_netcdf(options.out / "worn_profile.nc")
     pressures.to_netcdf(options.out / "worn_profile_judged.nc")
     draw(task, worn, pressures).savefig(options.out / "worn_profile.png", dpi=200)
-    print(table(pressures))
+    print(format_table(pressures))
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ ROWS = {  # label in the table: group, part of the case's name, part of the quan
         "p0",
     ),
     "... nearer to its end, except in the last cell": ("finite elements", "inside", "away from the last cell", "p0"),
-    "traction left on loaded ends, z >= 0.02a": ("consistency", "both ends", "traction", "p0"),
+    "residual traction on loaded ends, z >= 0.02a": ("consistency", "both ends", "traction", "p0"),
     "reciprocity (Betti)": ("consistency", "two loads", "work", ""),
     "Hetenyi's alternation, 200 rounds, against the explicit solution": ("consistency", "alternations", "", ""),
     "quadratures: stresses and displacement against much finer ones": ("convergence", "smooth load", "settings", "p0"),
@@ -119,7 +119,7 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
         f"refined cells of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
         f"{result.sizes['x']} x {result.sizes['y']} cells",
     )
-    yield "contact converged to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
+    yield "contact converged to 1 %, and the residual traction on the ends", f"{seconds:.1f} s"
     pressure = result["pressure"]
 
     def stresses(friction: float) -> xr.Dataset:

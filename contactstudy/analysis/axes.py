@@ -88,11 +88,11 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     """
     name = position_name(dimension_along(array, axis))
     if name not in array.coords:
-        raise missing_positions(array, name)
+        raise missing_positions_error(array, name)
     return array[name].reset_coords(drop=True)
 
 
-def missing_positions(array: xr.DataArray | xr.Dataset, name: str) -> InvalidInputError:
+def missing_positions_error(array: xr.DataArray | xr.Dataset, name: str) -> InvalidInputError:
     """Return the error of an array without the positions `name`."""
     return InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
 
@@ -153,28 +153,28 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
     [0.0, 0.5]
     """
     require(dataset)
-    swept = dataset[["hertz_half_width"]].sizes if "hertz_half_width" in dataset else {}
-    if any(size > 1 for size in swept.values()):
+    sweep_sizes = dataset[["hertz_half_width"]].sizes if "hertz_half_width" in dataset else {}
+    if any(size > 1 for size in sweep_sizes.values()):
         raise InvalidInputError(
-            "dataset", dict(swept), "a single case", "select one, for example with .isel(...) or .sel(...)"
+            "dataset", dict(sweep_sizes), "a single case", "select one, for example with .isel(...) or .sel(...)"
         )
-    case = dataset.isel(dict.fromkeys(swept, 0))
+    case = dataset.isel(dict.fromkeys(sweep_sizes, 0))
     for dim in [str(dim) for dim in case.dims if str(dim) != position_name(str(dim))]:
         name = position_name(dim)
         if name not in case.coords or case[name].dims != (dim,):
             raise InvalidInputError("dataset", dict(case.sizes), "a single case", f"with the positions {name}")
-        finite = np.flatnonzero(np.isfinite(case[name].values))
+        finite_indices = np.flatnonzero(np.isfinite(case[name].values))
         # A case without stresses has no finite positions of stresses.
-        case = case.isel({dim: finite}).swap_dims({dim: name}) if finite.size else case.drop_dims(dim)
+        case = case.isel({dim: finite_indices}).swap_dims({dim: name}) if finite_indices.size else case.drop_dims(dim)
     if "x_field" in case.coords and case["x_field"].dims == ("x",):
         # Stresses that share an axis with the pressure move to their own positions.
-        deep = [name for name, array in case.data_vars.items() if {"x", "z"} <= set(array.dims)]
-        finite = np.flatnonzero(np.isfinite(case["x_field"].values))
-        stresses = case[deep]
-        if deep:
-            stresses = stresses.isel(x=finite).swap_dims(x="x_field")
+        stress_names = [name for name, array in case.data_vars.items() if {"x", "z"} <= set(array.dims)]
+        finite_indices = np.flatnonzero(np.isfinite(case["x_field"].values))
+        stresses = case[stress_names]
+        if stress_names:
+            stresses = stresses.isel(x=finite_indices).swap_dims(x="x_field")
             stresses = stresses.drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
-        case = case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
+        case = case.drop_vars([*stress_names, "x_field"]).assign(stresses.data_vars)
     unsorted = [
         dim for dim, index in case.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
     ]
@@ -182,17 +182,17 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def reduce_dims(
-    function: Callable[..., tuple[Array, ...]], arguments: Sequence[tuple[xr.DataArray, Sequence[str]]], outputs: int
+    function: Callable[..., tuple[Array, ...]], arguments: Sequence[tuple[xr.DataArray, Sequence[str]]], count: int
 ) -> tuple[xr.DataArray, ...]:
-    """Apply a function that reduces the last axes of arrays; return its two or more outputs; dask stays lazy."""
+    """Apply a function that reduces the last axes of arrays to two or more outputs; dask arrays stay lazy."""
     results: tuple[xr.DataArray, ...] = xr.apply_ufunc(
         function,
         *(array for array, _ in arguments),
         input_core_dims=[list(dims) for _, dims in arguments],
-        output_core_dims=[[]] * outputs,
+        output_core_dims=[[]] * count,
         dask="parallelized",
         dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64] * outputs,
+        output_dtypes=[np.float64] * count,
     )
     return results
 
@@ -240,24 +240,24 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     # Divide variables, not arrays: arrays would be aligned by their positions, which change as well.
     half_width, max_pressure = (dataset[name].variable for name in SCALES)
 
-    def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
+    def scale_variable(array: xr.DataArray, specification: Variable) -> xr.Variable:
         length_power, pressure_power, scale = POWERS[specification.units]
-        result = array.variable / (half_width**length_power * max_pressure**pressure_power)
+        quotient = array.variable / (half_width**length_power * max_pressure**pressure_power)
         # Dimensions of the study come first, as in the result.
-        result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
-        result.attrs = {**array.attrs, "units": "1", "long_name": f"{specification.long_name}, over {scale}"}
-        return result
+        quotient = quotient.transpose(*(dim for dim in quotient.dims if dim not in array.dims), *array.dims)
+        quotient.attrs = {**array.attrs, "units": "1", "long_name": f"{specification.long_name}, over {scale}"}
+        return quotient
 
     variables, coordinates = {}, {}
     for name, array in dataset.data_vars.items():
         specification = variable_of(str(name), array.attrs)
         if specification.units in POWERS and name not in SCALES:
-            variables[name] = scaled(array, specification)
+            variables[name] = scale_variable(array, specification)
     for name, coordinate in dataset.coords.items():
         specification = variable_of(str(name), coordinate.attrs, coordinate=True)
-        shared = name in dataset.dims and half_width.ndim > 0
-        if name in COORDINATES and specification.units == "m" and not shared:
-            coordinates[name] = scaled(coordinate, specification)
+        is_shared = name in dataset.dims and half_width.ndim > 0
+        if name in COORDINATES and specification.units == "m" and not is_shared:
+            coordinates[name] = scale_variable(coordinate, specification)
             coordinates[name].attrs |= labels(f"{name}_over_a", coordinate=True)  # as in positions_over_a
     return dataset.assign_coords(coordinates).assign(variables)
 
@@ -276,7 +276,7 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
         The same values in SI along ``x_over_a``, ``y_over_a``, ``z_over_a``, and similar for stresses at separate
         positions; the coordinates ``x``, ``y``, ``z`` are in metres. A result of `solve` also has the coordinates
         `e_over_a`, `friction`, `gamma` and `profile` of an opened study, if its case has a single value of them:
-        several results on the same cells can be joined along one. :func:`single_case` is the inverse.
+        several results on the same cells can be joined along one of them. :func:`single_case` is the inverse.
 
     Raises
     ------
@@ -308,15 +308,15 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
             raise InvalidInputError(dim, "over a", "in metres", "results of analysis.normalized are over a already")
         if half_width.ndim == 0:
             if dim not in dataset.coords:
-                raise missing_positions(dataset, name)
-            values = dataset[dim].variable / half_width.variable
+                raise missing_positions_error(dataset, name)
+            scaled_positions = dataset[dim].variable / half_width.variable
         elif scaled_name in dataset.coords and dataset[scaled_name].dims == (dim,):
-            values = dataset[scaled_name].variable
+            scaled_positions = dataset[scaled_name].variable
         else:
             allowed = f"with the same {scaled_name} in all cases"
             raise InvalidInputError("dataset", f"{dim} of {half_width.size} cases", allowed, "select one case")
-        values.attrs = labels(scaled_name, coordinate=True)
-        dataset = dataset.assign_coords({scaled_name: values}).swap_dims({dim: scaled_name})
+        scaled_positions.attrs = labels(scaled_name, coordinate=True)
+        dataset = dataset.assign_coords({scaled_name: scaled_positions}).swap_dims({dim: scaled_name})
     return dataset
 
 

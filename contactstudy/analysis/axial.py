@@ -24,56 +24,56 @@ from contactstudy.arrays.variables import describe, labelled_cells, name_array, 
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 
-SKIPPED_CELLS, FITTED_CELLS = 2, 5  # Cells next to an edge that the fit omits, as inaccurate; next cells, in the fit
+SKIPPED_CELLS, FITTED_CELLS = 2, 5  # Cells next to an edge, too inaccurate for the fit; further cells, which it fits
 # Largest error of an edge in cells, measured on Hertz contacts at all positions of the edge in a cell
 EDGE_UNCERTAINTY = 0.04
 
 
 def contact_borders(pressure: Array, centres: Array, gap: Array | None = None) -> tuple[Array, Array]:
     """First and last y in contact of each row of cells (..., y), from pressure and gap; NaN without contact."""
-    shape, cells = pressure.shape[:-1], pressure.shape[-1]
-    rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cells)
-    opening = np.full_like(rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cells)
-    positions = np.broadcast_to(centres, pressure.shape).reshape(-1, cells)
-    first_centre, row_cells = np.nanmin(positions, axis=1, initial=np.inf), np.isfinite(positions).sum(axis=1)
-    step = (np.nanmax(positions, axis=1, initial=-np.inf) - first_centre) / np.maximum(row_cells - 1, 1)
-    first_edges = cells - 1 - _last_edges(rows[:, ::-1], opening[:, ::-1])
-    last_edges = _last_edges(rows, opening)
+    shape, cell_count = pressure.shape[:-1], pressure.shape[-1]
+    pressure_rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cell_count)
+    gap_rows = np.full_like(pressure_rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cell_count)
+    positions = np.broadcast_to(centres, pressure.shape).reshape(-1, cell_count)
+    first_centre, row_cell_counts = np.nanmin(positions, axis=1, initial=np.inf), np.isfinite(positions).sum(axis=1)
+    step = (np.nanmax(positions, axis=1, initial=-np.inf) - first_centre) / np.maximum(row_cell_counts - 1, 1)
+    first_edges = cell_count - 1 - _last_edges(pressure_rows[:, ::-1], gap_rows[:, ::-1])
+    last_edges = _last_edges(pressure_rows, gap_rows)
     return (first_centre + step * first_edges).reshape(shape), (first_centre + step * last_edges).reshape(shape)
 
 
 def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
     """Last edge of each row, in cells from the centre of the first cell; NaN without contact."""
     edges = np.full(pressure.shape[0], np.nan)
-    rows = np.flatnonzero(pressure.any(axis=1))
-    last_loaded = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
-    begin_inside, begin_outside = last_loaded - SKIPPED_CELLS, last_loaded + 1 + SKIPPED_CELLS
-    p_squared = _samples(pressure[rows], begin_inside, -1) ** 2
-    gap_root = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
-    face = last_loaded + 0.5
-    estimates = np.stack([begin_inside + _distance_to_zero(p_squared), begin_outside - _distance_to_zero(gap_root)])
+    loaded_rows = np.flatnonzero(pressure.any(axis=1))
+    last_loaded = pressure.shape[1] - 1 - (pressure[loaded_rows, ::-1] > 0).argmax(axis=1)
+    inner, outer = last_loaded - SKIPPED_CELLS, last_loaded + 1 + SKIPPED_CELLS
+    square = _select_samples(pressure[loaded_rows], inner, -1) ** 2
+    gap_power = _select_samples(gap[loaded_rows], outer, 1) ** (2 / 3)
+    cell_face = last_loaded + 0.5
+    estimates = np.stack([inner + _distance_to_zero(square), outer - _distance_to_zero(gap_power)])
     # For a contact of fewer than 7 cells the gap alone determines the edge.
-    is_valid = np.abs(estimates - face) <= 1
-    total = np.where(is_valid, estimates, 0.0).sum(axis=0)
-    edges[rows] = np.where(is_valid.any(axis=0), total / np.maximum(is_valid.sum(axis=0), 1), face)
+    is_valid = np.abs(estimates - cell_face) <= 1
+    estimate_sum = np.where(is_valid, estimates, 0.0).sum(axis=0)
+    edges[loaded_rows] = np.where(is_valid.any(axis=0), estimate_sum / np.maximum(is_valid.sum(axis=0), 1), cell_face)
     return edges
 
 
-def _samples(values: FloatArray, begin: IntArray, direction: int) -> FloatArray:
-    """Values of each row from the cell `begin`: array (row, `FITTED_CELLS`); NaN unless all are positive and finite."""
-    cells = begin[:, None] + direction * np.arange(FITTED_CELLS)
+def _select_samples(values: FloatArray, start: IntArray, direction: int) -> FloatArray:
+    """Values of each row from the cell `start`: array (row, `FITTED_CELLS`); NaN unless all are positive and finite."""
+    cells = start[:, None] + direction * np.arange(FITTED_CELLS)
     in_range = (cells >= 0) & (cells < values.shape[1])
     samples = np.take_along_axis(values, np.where(in_range, cells, 0), axis=1)
     is_valid = (in_range & (samples > 0) & np.isfinite(samples)).all(axis=1)
     return np.where(is_valid[:, None], samples, np.nan)
 
 
-def _distance_to_zero(values: FloatArray) -> FloatArray:
-    """Return the steps from the zero of the fitted quadratic to the first of growing values; NaN without a zero."""
-    to_quadratic = np.linalg.pinv(np.vander(np.arange(float(FITTED_CELLS)), 3))
-    bend, slope, constant_term = to_quadratic @ values.T
+def _distance_to_zero(samples: FloatArray) -> FloatArray:
+    """Distance, in cells, from the zero of a quadratic fitted to growing samples to the first sample; NaN if none."""
+    fit_matrix = np.linalg.pinv(np.vander(np.arange(float(FITTED_CELLS)), 3))
+    curvature, slope, constant_term = fit_matrix @ samples.T
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(2 * constant_term / (slope + np.sqrt(slope**2 - 4 * bend * constant_term)))
+        return np.asarray(2 * constant_term / (slope + np.sqrt(slope**2 - 4 * curvature * constant_term)))
 
 
 def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
@@ -135,20 +135,20 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
             "x_first": x_first,
             "x_last": x_last,
             "contact_length": x_last - x_first if has_contact else 0.0,
-            "contact_area": _area(grid, gap, y_right - y_left, (x_first, x_last)) if has_contact else 0.0,
+            "contact_area": _integrate_width(grid, gap, y_right - y_left, (x_first, x_last)) if has_contact else 0.0,
         },
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
 
 
-def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:
+def _integrate_width(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:
     """Integral of the width over x, by a spline of the squared width, which is smooth at the ends."""
-    first, last = ends
+    first_x, last_x = ends
     columns = np.flatnonzero(np.isfinite(width))
     if np.any(np.diff(columns) > 1):
         return float(np.nansum(width * grid.widths))
-    smooth = [
+    is_smooth = [
         int(0 <= neighbour < grid.cells_x and np.isfinite(gap[neighbour]).any())
         for neighbour in (columns[0] - 1, columns[-1] + 1)
     ]
@@ -156,17 +156,17 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, flo
     wide = columns[width[columns] > 2 * (SKIPPED_CELLS + FITTED_CELLS) * grid.dy]
     columns = columns[(columns >= wide[0]) & (columns <= wide[-1])] if wide.size > 3 else columns
     # The border within an outermost column may not reach the column's centre.
-    columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
+    columns = columns[(grid.x[columns] > first_x) & (grid.x[columns] < last_x)]
     if columns.size < 2:
         return float(np.nansum(width * grid.widths))
     from scipy.interpolate import CubicSpline
 
-    x = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])
-    squared = np.concatenate([[0.0][: smooth[0]], width[columns] ** 2, [0.0][: smooth[1]]])
+    x = np.concatenate([[first_x][: is_smooth[0]], grid.x[columns], [last_x][: is_smooth[1]]])
+    squared_width = np.concatenate([[0.0][: is_smooth[0]], width[columns] ** 2, [0.0][: is_smooth[1]]])
     angles = np.pi * (np.arange(4096) + 0.5) / 4096
-    nodes = 0.5 * (first + last) - 0.5 * (last - first) * np.cos(angles)
-    widths = np.sqrt(np.maximum(CubicSpline(x, squared)(nodes), 0.0))
-    return float((widths * np.sin(angles)).sum() * 0.5 * (last - first) * np.pi / angles.size)
+    nodes = 0.5 * (first_x + last_x) - 0.5 * (last_x - first_x) * np.cos(angles)
+    widths = np.sqrt(np.maximum(CubicSpline(x, squared_width)(nodes), 0.0))
+    return float((widths * np.sin(angles)).sum() * 0.5 * (last_x - first_x) * np.pi / angles.size)
 
 
 def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
@@ -198,7 +198,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def loaded_range(axial: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return the first and the last position of a pressure along the axis above 0, metres; NaN without contact."""
+    """Return the first and the last loaded position along the axis, metres; NaN without contact."""
     x, loaded_x = dimension_along(axial, "x"), positions(axial, "x").where(axial > 0)
     return loaded_x.min(x), loaded_x.max(x)
 
@@ -248,7 +248,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     Returns
     -------
     DataArray
-        N, without the dimensions along x and y. A cell that a position cuts counts by its part.
+        N, without the dimensions along x and y. A cut cell contributes the load on its length between the positions.
 
     Raises
     ------
@@ -305,11 +305,11 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """
     pressure = sort_positions(require_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
     y = dimension_along(pressure, "y")
-    low, high = reduce_dims(contact_borders, [(pressure, [y]), (positions(pressure, "y"), [y])], 2)
-    width = (0.5 * (high - low)).fillna(0.0).where(pressure.notnull().any(y))
-    mid_length = 0.5 * (low + high)
+    first_y, last_y = reduce_dims(contact_borders, [(pressure, [y]), (positions(pressure, "y"), [y])], 2)
+    width = (0.5 * (last_y - first_y)).fillna(0.0).where(pressure.notnull().any(y))
+    contact_middle = 0.5 * (first_y + last_y)
     return xr.Dataset(
-        {"half_width": name_array("half_width", width), "contact_middle": name_array("contact_middle", mid_length)}
+        {"half_width": name_array("half_width", width), "contact_middle": name_array("contact_middle", contact_middle)}
     )
 
 

@@ -34,8 +34,8 @@ from contactstudy.arrays.variables import (
 )
 from contactstudy.errors import InvalidInputError
 
-MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
-END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
+MISSING_LOAD = 0.01  # Minimum fraction of the load that a cut contact lacks
+END_TOLERANCE = 1e-6  # Largest distance, over the cell width, of a border of the cells from an end that it equals
 
 # Comments of numbers that depend on the cells, with errors that are not estimated
 WHOLE_CELLS, OUTERMOST_CELL = "in whole cells", "mean of the outermost loaded cell"
@@ -74,11 +74,11 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     [4.0, 2.0, 8.0, -2.0]
     """
     dataset = require_in_si(dataset, "pressure", normalized=True)
-    pressure, facing = dataset["pressure"], under_roller(dataset)
+    pressure, is_facing = dataset["pressure"], under_roller(dataset)
     (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_size(pressure, axis)) for axis in "xy")
-    sample_x, loaded = positions(pressure, "x"), pressure > 0
+    sample_x, is_loaded = positions(pressure, "x"), pressure > 0
 
-    def length(mask: xr.DataArray, axis: str) -> xr.DataArray:
+    def measure_length(mask: xr.DataArray, axis: str) -> xr.DataArray:
         lower_edges, upper_edges = (edges.where(mask) for edges in cell_edges(pressure, axis))
         dim = dimension_along(pressure, axis)
         return (upper_edges.max(dim) - lower_edges.min(dim)).fillna(0.0)
@@ -86,18 +86,18 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     load = (pressure * dy).sum(y) * dx
     resultant = load.sum(x)
     numbers = {
-        "contact_area": (loaded * dx * dy).sum((x, y)),
-        "contact_length": length(loaded.any(y), "x"),
-        "contact_width": length(loaded.any(x), "y"),
+        "contact_area": (is_loaded * dx * dy).sum((x, y)),
+        "contact_length": measure_length(is_loaded.any(y), "x"),
+        "contact_width": measure_length(is_loaded.any(x), "y"),
         "resultant": resultant,
         "load_position": (load * sample_x).sum(x) / resultant.where(resultant > 0),
     }
-    facing_x = sample_x.where(facing)
+    facing_x = sample_x.where(is_facing)
     mid_position = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
     centre = mid_position if about is None else checks.finite("about", about, "metres")
     numbers["moment"] = resultant * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        numbers["contact_length_loss"] = length(facing, "x") - numbers["contact_length"]
+        numbers["contact_length_loss"] = measure_length(is_facing, "x") - numbers["contact_length"]
     has_pressure = pressure.notnull().any((x, y))
     scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
@@ -157,12 +157,12 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
         name = f"edge_pressure_{end}"
         value = without_coordinates(axial, x).isel({x: index}).where(is_loaded.any(x) & (is_cut == 0))
         # At a singular end the mean of a cell depends on the size of the cell.
-        edges[name] = name_array(name, _unbounded_if_singular(dataset, end, value))
+        edges[name] = name_array(name, _replace_at_singular_end(dataset, end, value))
         edges[name].attrs["comment"] = OUTERMOST_CELL
     return without_error(xr.Dataset(edges), *edges)
 
 
-def _unbounded_if_singular(dataset: xr.Dataset, end: str, value: xr.DataArray) -> xr.DataArray:
+def _replace_at_singular_end(dataset: xr.Dataset, end: str, value: xr.DataArray) -> xr.DataArray:
     """Value near an end; infinite at a singular end, where pressure and stress are unbounded."""
     is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
     return value.where(~is_singular | value.isnull(), np.inf)
@@ -171,8 +171,8 @@ def _unbounded_if_singular(dataset: xr.Dataset, end: str, value: xr.DataArray) -
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Return 1 where the contact continues beyond the first or the last x, as in a part of a result, otherwise 0.
 
-    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range,
-    which follows from the inputs of `solve`, else begins at x = 0.
+    A cut contact carries less than the load, and is loaded at a border of the cells inside the contact's range, which
+    follows from the inputs of `solve`; without inputs it begins at x = 0.
 
     Parameters
     ----------
@@ -210,13 +210,13 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
     tolerance = END_TOLERANCE * dx
     omits_cells = (abs(lower_edges - upper_edges.shift({x: 1})) > tolerance).any(x)
-    is_part = lacks_load & ~in_contact.isel({y: [0, -1]}).any((x, y)) & ~omits_cells
-    columns = (
+    is_selection = lacks_load & ~in_contact.isel({y: [0, -1]}).any((x, y)) & ~omits_cells
+    border_masks = (
         (lower_edges == lower_edges.min(x)) & (lower_edges > start + tolerance),
         (upper_edges == upper_edges.max(x)) & (upper_edges < stop - tolerance),
     )
-    first, last = (is_part & (in_contact.any(y) & column).any(x) for column in columns)
-    return first.astype(np.float64).drop_attrs(deep=False), last.astype(np.float64).drop_attrs(deep=False)
+    first_cut, last_cut = (is_selection & (in_contact.any(y) & border_mask).any(x) for border_mask in border_masks)
+    return first_cut.astype(np.float64).drop_attrs(deep=False), last_cut.astype(np.float64).drop_attrs(deep=False)
 
 
 def edge_factors(
@@ -239,8 +239,8 @@ def edge_factors(
     -------
     Dataset
         `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
-        `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
-        largest, anywhere). NaN without points and at a cut end; infinite at a singular end; without an error.
+        `over_reference_last` (over the reference's ends), `over_reference_middle`, and `over_reference_peak` (ratio of
+        the largest values). NaN without points and at a cut end; infinite at a singular end; without an error.
 
     Raises
     ------
@@ -257,43 +257,43 @@ def edge_factors(
     dataset = require_in_si(dataset, "pressure", "hertz_half_width")
     checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     length = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
-    values = _values(dataset, variable, length)
+    values = _find_end_values(dataset, variable, length)
     factors = {f"end_over_middle_{end}": values[end] / values["middle"] for end in ("first", "last")}
     if reference is not None:
         reference = require_in_si(reference, "pressure", argument="reference")
-        reference_values = _values(reference, variable, length)
+        reference_values = _find_end_values(reference, variable, length)
         factors |= {f"over_reference_{name}": value / reference_values[name] for name, value in values.items()}
-    base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
+    specification = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
     result = xr.Dataset(
-        {name: name_array(name, value.reset_coords(drop=True), base) for name, value in factors.items()}
+        {name: name_array(name, value.reset_coords(drop=True), specification) for name, value in factors.items()}
     )
     return without_error(result, *factors)
 
 
-def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> dict[str, xr.DataArray]:
+def _find_end_values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> dict[str, xr.DataArray]:
     """Largest value near the first and the last border, at mid-length, and anywhere."""
     axial = axial_pressure(dataset)
-    profile = axial if variable == "pressure" else measure(dataset, variable)
-    if list(axis_dimensions(profile)) != ["x"]:
-        profile = largest_sample(dataset, variable, along="x")[f"largest_{variable}"]
-    profile = profile.compute()
-    if (profile < 0).any():
+    axial_values = axial if variable == "pressure" else measure(dataset, variable)
+    if list(axis_dimensions(axial_values)) != ["x"]:
+        axial_values = largest_sample(dataset, variable, along="x")[f"largest_{variable}"]
+    axial_values = axial_values.compute()
+    if (axial_values < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
-    x, sample_x = dimension_along(profile, "x"), positions(profile, "x")
+    x, sample_x = dimension_along(axial_values, "x"), positions(axial_values, "x")
     # At a cut end the border of the contact is unknown.
-    ends = zip(loaded_range(axial), cut_ends(dataset), strict=True)
-    borders = [border.where(cut == 0).compute() for border, cut in ends]
+    ends_and_cuts = zip(loaded_range(axial), cut_ends(dataset), strict=True)
+    borders = [border.where(is_cut == 0).compute() for border, is_cut in ends_and_cuts]
     values = {}
-    for side, border in zip(("first", "last"), borders, strict=True):
+    for end, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
-        value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
-        values[side] = _unbounded_if_singular(dataset, side, value)
+        value = axial_values.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
+        values[end] = _replace_at_singular_end(dataset, end, value)
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
-    nearest = distance.fillna(np.inf).argmin(x)
-    width = cell_size(profile, "x")
+    nearest_index = distance.fillna(np.inf).argmin(x)
+    width = cell_size(axial_values, "x")
     # A mid-length beyond the points has no value.
-    is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
-    return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}
+    is_within = distance.min(x) <= (width.isel({x: nearest_index}) if x in width.dims else width)
+    return values | {"middle": axial_values.isel({x: nearest_index}).where(is_within), "peak": axial_values.max(x)}
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -309,29 +309,30 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
 def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
     """All numbers of a solved case: scalars of the Dataset (refined), or else numbers of its cells."""
     require(dataset, "pressure", "hertz_max_pressure")
-    array, scale = dataset["pressure"].transpose("x", "y"), float(dataset["hertz_max_pressure"])
-    pressure = array.values
+    field, scale = dataset["pressure"].transpose("x", "y"), float(dataset["hertz_max_pressure"])
+    pressure = field.values
     x_index, y_index = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     axial = pressure.max(axis=1)
-    outermost = axial[axial > 0][[0, -1]] if (axial > 0).any() else np.full(2, np.nan)
+    outermost_pressures = axial[axial > 0][[0, -1]] if (axial > 0).any() else np.full(2, np.nan)
     first, last = (
         float(dataset.get(f"end_pressure_{end}", value)) / scale
-        for end, value in zip(("first", "last"), outermost, strict=True)
+        for end, value in zip(("first", "last"), outermost_pressures, strict=True)
     )
     numbers = {
         "peak_pressure": (pressure[x_index, y_index], ""),
-        "peak_pressure_x": (array["x"].values[x_index], WHOLE_CELLS),
-        "peak_pressure_y": (array["y"].values[y_index], WHOLE_CELLS),
+        "peak_pressure_x": (field["x"].values[x_index], WHOLE_CELLS),
+        "peak_pressure_y": (field["y"].values[y_index], WHOLE_CELLS),
         "end_pressure_over_p0_first": (first, OUTERMOST_CELL),
         "end_pressure_over_p0_last": (last, OUTERMOST_CELL),
         "end_pressure_over_p0": (0.5 * (first + last), OUTERMOST_CELL),
     }
-    for name, axis, across in (("contact_length", "x", 1), ("contact_width", "y", 0)):
-        loaded, centres, width = (pressure > 0).any(axis=across), array[axis].values, array.coords.get(f"{axis}_width")
+    for name, axis, other_axis in (("contact_length", "x", 1), ("contact_width", "y", 0)):
+        is_loaded, centres = (pressure > 0).any(axis=other_axis), field[axis].values
+        width = field.coords.get(f"{axis}_width")
         # Without labels: a study computes these numbers for every case.
         mean_width = np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
         widths = mean_width if width is None else width.values
-        extent = np.ptp(centres[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
+        extent = np.ptp(centres[is_loaded]) + widths[is_loaded][[0, -1]].mean() if is_loaded.any() else 0.0
         numbers[name] = extent, WHOLE_CELLS
     result = {}
     for name, (value, comment) in numbers.items():

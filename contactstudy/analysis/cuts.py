@@ -15,7 +15,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 
-def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
+def select_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
     """Return variables or measures by name; default: all variables."""
     if variables is None:
         return {str(name): array for name, array in dataset.data_vars.items()}
@@ -27,27 +27,27 @@ def fields_on_same_points(
 ) -> dict[str, xr.DataArray]:
     """Return fields on the same points, by name; default: fields along the axes `along`, in the body or on its top."""
     if variables is not None:
-        fields = named_arrays(dataset, variables)
+        fields = select_arrays(dataset, variables)
     else:
         axes = {str(name): axis_dimensions(array) for name, array in dataset.data_vars.items()}
-        spatial = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
-        stresses = [name for name in spatial if "z" in axes[name]]
-        fields = {name: dataset[name] for name in stresses or spatial}
-    points = {tuple(axis_dimensions(array).values()) for array in fields.values()}
-    if len(points) != 1 or points == {()}:
+        field_names = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
+        stresses = [name for name in field_names if "z" in axes[name]]
+        fields = {name: dataset[name] for name in stresses or field_names}
+    point_dims = {tuple(axis_dimensions(array).values()) for array in fields.values()}
+    if len(point_dims) != 1 or point_dims == {()}:
         raise InvalidInputError(
-            "variables", variables or "all", "fields on the same points along x, y or z", points_hint(fields)
+            "variables", variables or "all", "fields on the same points along x, y or z", describe_points(fields)
         )
     return fields
 
 
-def points_hint(arrays: dict[str, xr.DataArray]) -> str:
+def describe_points(arrays: dict[str, xr.DataArray]) -> str:
     """Return the text of a hint: the variables, grouped by their points."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in arrays.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(name)
     texts = [f"{', '.join(names)} ({', '.join(dims) or 'a single number'})" for dims, names in groups.items()]
-    return f"name some on the same points: {' or '.join(texts)}" if texts else "the dataset has no such variable"
+    return f"name variables on the same points: {' or '.join(texts)}" if texts else "the dataset has no such variable"
 
 
 def along_line(
@@ -89,7 +89,7 @@ def along_line(
     >>> cut.tresca.values.tolist()
     [0.0, 1.5, 3.0]
     """
-    count = checks.count("points", points, minimum=2)
+    point_count = checks.count("points", points, minimum=2)
     fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
     start_point, end_point = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
     if start_point.size not in (2, 3) or end_point.size != start_point.size:
@@ -101,12 +101,12 @@ def along_line(
     length = float(np.linalg.norm(end_point - start_point))
     if length == 0:
         raise InvalidInputError("end", end, "different from start")
-    fraction = np.linspace(0.0, 1.0, count)
+    fraction = np.linspace(0.0, 1.0, point_count)
     targets = {}
     for axis, start_coordinate, end_coordinate in zip(AXES, start_point, end_point, strict=False):
         values = start_coordinate + fraction * (end_coordinate - start_coordinate)
         if axis in axes:
-            values = _clip_rounding(axis, values, positions(field, axis).values)
+            values = _clip_to_points(axis, values, positions(field, axis).values)
         targets[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
     distance = ("distance", fraction * length, labels("distance", coordinate=True))
     values = {name: _interpolate(array, targets) for name, array in fields.items()}
@@ -154,16 +154,16 @@ def in_plane(
     field = next(iter(fields.values()))
     if axis not in axis_dimensions(field):
         raise InvalidInputError("variables", list(fields), f"fields along {axis}")
-    position = _clip_rounding(axis, np.array([checks.finite(axis, value, "metres")]), positions(field, axis).values)
+    position = _clip_to_points(axis, np.array([checks.finite(axis, value, "metres")]), positions(field, axis).values)
     target = xr.DataArray(position[0], attrs=labels(axis, coordinate=True))
     values = {name: _interpolate(array, {axis: target}) for name, array in fields.items()}
     return xr.Dataset(values).assign_coords({axis: target})
 
 
-def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatArray:
-    """Values clipped to the range of `points` within rounding; raise for values outside."""
+def _clip_to_points(name: str, values: FloatArray, points: FloatArray) -> FloatArray:
+    """Clip values to the range of `points`; raise for values beyond the range by more than rounding."""
     low, high = float(points.min()), float(points.max())
-    # Distance beyond the points of a result, over the range of the points, that counts as rounding
+    # Distance beyond the points of a result that counts as rounding, m
     rounding = 1e-9 * max(high - low, abs(high), abs(low))
     is_outside = (values < low - rounding) | (values > high + rounding)
     if is_outside.any():

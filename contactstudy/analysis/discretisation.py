@@ -29,10 +29,10 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     """Return peak and end pressure and half-width of a contact, each with an estimate of its discretisation error.
 
     The estimate is the correction of Richardson's extrapolation with order 1, and with order 0.8 at the ends; at least
-    the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where the grids show no limit: at a
-    loaded sharp end inside the body's top and for the peak then; if the two grids differ by more than a fifth; for
-    peak and ends if the shape turns too much between loaded columns. An edge radius, or a top that continues, within
-    half a cell of the end is not covered.
+    the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where the grids show no limit: for the
+    peak and for a loaded sharp end inside the body's top; if the two grids differ by more than a fifth; for
+    peak and ends if the shape turns too much between loaded columns. It does not cover an edge radius, or a top that
+    continues, within half a cell of the end.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
         raise InvalidInputError(
             "coarse", f"{coarse_cells} cells", f"fewer in each direction than the fine grid's {cells}"
         )
-    displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
+    edge_error = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
     # At a loaded end of the shape inside the body's top the pressure has no limit, so the peak has no limit either.
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
@@ -82,24 +82,22 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     largest_turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if largest_turn > RESOLVED_TURN else set()
 
-    def correction(name: str) -> float:
+    def extrapolate(name: str) -> float:
         """Distance from the fine value to the limit of Richardson's extrapolation."""
         order = END_ORDER if name in ENDS else ASSUMED_ORDER
         return float(abs(values[name] - coarse_values[name]) / (ratio**order - 1))
 
-    def estimate(name: str) -> float:
+    def estimate_error(name: str) -> float:
         value = abs(values[name])
-        # If the grids differ by more than this fraction, they do not allow an estimate of the limit; nor does NaN.
+        # Grids that differ by more than a fifth, or contain NaN, do not allow an estimate of the limit.
         has_limit = name not in singular_names | unresolved and abs(values[name] - coarse_values[name]) <= 0.2 * value
-        return (
-            max(correction(name), displacement * value if np.isfinite(displacement) else 0.0) if has_limit else np.inf
-        )
+        return max(extrapolate(name), edge_error * value if np.isfinite(edge_error) else 0.0) if has_limit else np.inf
 
-    errors = {name: estimate(name) for name in values}
+    errors = {name: estimate_error(name) for name in values}
     peak = values["peak_pressure"]
     for name in ENDS:
         # The peak's error covers an end pressure without a limit, if below the peak, by that end's correction.
-        error = errors[name] if np.isfinite(errors[name]) or values[name] >= peak else correction(name)
+        error = errors[name] if np.isfinite(errors[name]) or values[name] >= peak else extrapolate(name)
         errors["peak_pressure"] = max(errors["peak_pressure"], values[name] + error - peak)
     result = xr.Dataset()
     for name, value in values.items():
@@ -108,8 +106,10 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             result[f"{name}_error"].attrs["comment"] = SHARP_EDGE_ADVICE
         elif np.isinf(errors[name]):
             columns, rows = cells
-            reason = "the cells are too coarse for the shape's turn" if name in unresolved else "no limit in sight"
-            advice = _advice(fine, 2.0 * max(1.0, largest_turn / RESOLVED_TURN) if name in unresolved else 2.0)
+            reason = (
+                "the cells are too coarse for the shape's turn" if name in unresolved else "the values do not converge"
+            )
+            advice = _advise(fine, 2.0 * max(1.0, largest_turn / RESOLVED_TURN) if name in unresolved else 2.0)
             result[f"{name}_error"].attrs["comment"] = f"{reason} on {columns} x {rows} cells: {advice}"
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in (cells, coarse_cells)]
     return describe(result, "contact quantities with their discretisation error")
@@ -126,17 +126,17 @@ def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
 def _largest_turn(contact: xr.Dataset) -> float:
     """Largest turn of the shape between columns, as the pressure that it causes over the peak; 0 without pressure."""
     first_column, last_column = _shape_columns(contact)
-    face = contact.isel(x=slice(first_column, last_column + 1))
-    shape = face["initial_gap"] if "initial_gap" in face else face["gap"] - face["displacement_z"]
-    heights, pressure = (array.transpose("x", "y").values for array in (shape, face["pressure"]))
-    x, y, axial = face["x"].values, face["y"].values, pressure.max(axis=1)
+    cells = contact.isel(x=slice(first_column, last_column + 1))
+    shape = cells["initial_gap"] if "initial_gap" in cells else cells["gap"] - cells["displacement_z"]
+    heights, pressure = (array.transpose("x", "y").values for array in (shape, cells["pressure"]))
+    x, y, axial = cells["x"].values, cells["y"].values, pressure.max(axis=1)
     in_contact = np.flatnonzero(axial)
     if x.size < 3 or not in_contact.size:
         return 0.0
     mid_column = (in_contact[0] + in_contact[-1]) // 2
-    top = int(pressure[mid_column].argmax())
-    farthest_row = int(np.abs(y - y[top]).argmax())
-    curvature = 2 * (heights[mid_column, farthest_row] - heights[mid_column, top]) / (y[farthest_row] - y[top]) ** 2
+    row = int(pressure[mid_column].argmax())
+    farthest_row = int(np.abs(y - y[row]).argmax())
+    curvature = 2 * (heights[mid_column, farthest_row] - heights[mid_column, row]) / (y[farthest_row] - y[row]) ** 2
     if not (curvature > 0 and axial[mid_column] > 0):
         return 0.0
     # In the middle column, p = E* a / (2 R) and w = pi p a / 2. A turn causes a pressure of modulus times angle.
@@ -146,7 +146,7 @@ def _largest_turn(contact: xr.Dataset) -> float:
     return float((pressure_per_angle * turns * axial).max() / axial.max() ** 2)
 
 
-def _advice(contact: xr.Dataset, factor: float) -> str:
+def _advise(contact: xr.Dataset, factor: float) -> str:
     """Advice for coarse cells: refined columns, or more uniform cells."""
     remedy = "leave the grid out, for columns that are refined"
     x, y = (contact[axis].values for axis in ("x", "y"))
@@ -174,10 +174,10 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
     }
 
 
-def _end_pressure(columns: FloatArray) -> float:
+def _end_pressure(pressures: FloatArray) -> float:
     """Pressure half a cell before the first column, extrapolated by a parabola; 0 if the first column is open."""
-    if columns[0] == 0:
+    if pressures[0] == 0:
         return 0.0
-    loaded = columns[: int((columns > 0).cumprod().sum())]
+    loaded = pressures[: int((pressures > 0).cumprod().sum())]
     polynomial = np.polynomial.Polynomial.fit(np.arange(0.5, loaded.size), loaded, loaded.size - 1)
     return max(0.0, float(polynomial(0.0)))

@@ -42,7 +42,7 @@ SINGULAR = "the pressure is singular, and so is the stress"
 Measure = Callable[[xr.Dataset], xr.DataArray]
 
 
-def _principal(stress: xr.Dataset, rank: int) -> xr.DataArray:
+def _principal_stress(stress: xr.Dataset, rank: int) -> xr.DataArray:
     """Principal stress of a rank, 1 the largest, Pa."""
     principal = principal_stresses(stress)["principal_stress"].sel(principal=rank, drop=True)
     return name_array(f"principal_stress_{rank}", principal)
@@ -54,7 +54,7 @@ POINTWISE: dict[str, tuple[tuple[str, ...], Measure]] = {
     "tresca": (STRESSES, tresca),
     "maximum_shear": (STRESSES, maximum_shear),
     "hydrostatic": (STRESSES[:3], hydrostatic),
-    **{f"principal_stress_{rank}": (STRESSES, partial(_principal, rank=rank)) for rank in (1, 2, 3)},
+    **{f"principal_stress_{rank}": (STRESSES, partial(_principal_stress, rank=rank)) for rank in (1, 2, 3)},
 }
 MEASURES: dict[str, tuple[tuple[str, ...], Measure]] = POINTWISE | {  # All measures: at a point, and of a rolling cycle
     name: (("tau_yz",), lambda stress, name=name: orthogonal_shear_range(stress)[name])
@@ -96,12 +96,12 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
     checks.known_name("variable", name, {*map(str, dataset.data_vars), *MEASURES})
     components, function = MEASURES[name]
     stress = require_in_si(dataset, *components, normalized=True)[list(components)]
-    padding = stress[components[0]].isnull().compute()
-    if padding.all():
+    is_missing = stress[components[0]].isnull().compute()
+    if is_missing.all():
         raise InvalidInputError(name, "nan everywhere", "a field with at least one number")
     value = function(stress.fillna(0.0))
-    absent = padding.all([dim for dim in padding.dims if dim not in value.dims])
-    return value.where(~absent).assign_attrs(value.attrs)
+    is_padding = is_missing.all([dim for dim in is_missing.dims if dim not in value.dims])
+    return value.where(~is_padding).assign_attrs(value.attrs)
 
 
 def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: str | None = None) -> xr.Dataset:
@@ -150,8 +150,8 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
         f"largest_{variable}_{axis}": points[axis].isel({dim: index[dim]}).where(largest.notnull())
         for axis, dim in axes.items()
     }
-    base = variable_of(variable, array.attrs)
-    result = xr.Dataset({name: name_array(name, value, base) for name, value in values.items()}).compute()
+    specification = variable_of(variable, array.attrs)
+    result = xr.Dataset({name: name_array(name, value, specification) for name, value in values.items()}).compute()
     result[f"largest_{variable}"].attrs["comment"] = "largest sample; unbounded near a singular end"
     return without_error(result, *values)
 
@@ -250,8 +250,7 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
         error = np.inf
     else:
         if "pressure" not in case:
-            # Only the samples themselves show whether they are close enough: the error is at least half of the change
-            # from samples twice as far apart.
+            # Without a pressure the error is at least half of the change from samples twice as far apart.
             error = max(error, 0.5 * abs(value - find_maximum(NEIGHBOURS, stride=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])
@@ -281,13 +280,13 @@ def label_largest_stress(
     """Return the largest von Mises stress, its error and its position (x, y, z) as a Dataset, see :func:`peak`."""
     coordinates = dict(zip("xyz", position, strict=True))
     if "peak_pressure" in result and np.isinf(float(result["peak_pressure"])):
-        stress = Peak(np.inf, np.inf, dict.fromkeys("xyz", np.nan), SINGULAR)
+        largest_stress = Peak(np.inf, np.inf, dict.fromkeys("xyz", np.nan), SINGULAR)
     elif "peak_pressure_error" in result:
-        relative = float(result["peak_pressure_error"] / result["peak_pressure"])
-        stress = Peak(value, error + value * relative, coordinates)
+        relative_error = float(result["peak_pressure_error"] / result["peak_pressure"])
+        largest_stress = Peak(value, error + value * relative_error, coordinates)
     else:
-        stress = Peak(value, np.nan, coordinates, "the error on the given cells is not estimated")
-    labelled_peak = label_peak("von_mises", stress, variable_of("von_mises", result["von_mises"].attrs))
+        largest_stress = Peak(value, np.nan, coordinates, "the error on the given cells is not estimated")
+    labelled_peak = label_peak("von_mises", largest_stress, variable_of("von_mises", result["von_mises"].attrs))
     return without_error(labelled_peak, *(f"peak_von_mises_{axis}" for axis in "xyz"))
 
 
@@ -306,7 +305,7 @@ def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tup
 
 
 def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
-    """Text on where samples are too coarse for the pressure above: at its peak or at the largest sample; or empty."""
+    """Text on samples too coarse for the pressure above, at its peak or at the largest sample; empty if none."""
     if not {"pressure", "x", "y"} <= set(case.variables) or case["y"].size < 2:
         return ""
     pressure, x = case["pressure"].transpose("x", "y").values, case["x"].values
@@ -316,16 +315,16 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
     if not axial[in_range].any():
         return ""
     column = int(np.where(in_range, axial, -1.0).argmax())
-    width = min(variation_lengths(pressure, x, dy, column))
+    variation_length = min(variation_lengths(pressure, x, dy, column))
     checked_columns = [(column, {"x": float(x[column])})]
     # On the flank of the peak the stresses vary as below the peak: check the largest sample only if it is farther away.
-    if "x" in sample and abs(sample["x"] - x[column]) > 2 * width:
+    if "x" in sample and abs(sample["x"] - x[column]) > 2 * variation_length:
         checked_columns.append((int(np.abs(x - sample["x"]).argmin()), sample))
     for column, location in checked_columns:
         length_x, length_y = variation_lengths(pressure, x, dy, column)
         # Near a free end the stresses vary along x even under a uniform pressure.
-        from_end = min((abs(float(x[column]) - end) for end in cell_ends(case)), default=np.inf)
-        scales = {"x": min(length_x, max(length_y, from_end)), "z": min(length_x, length_y)}
+        end_distance = min((abs(float(x[column]) - end) for end in cell_ends(case)), default=np.inf)
+        scales = {"x": min(length_x, max(length_y, end_distance)), "z": min(length_x, length_y)}
         for axis, scale in scales.items():
             points = axes.get(axis, np.zeros(1))
             nearest = int(np.abs(points - location.get(axis, 0.5 * scale)).argmin())

@@ -28,7 +28,7 @@ RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
 DEPENDENT_INPUTS = ("approach", "load_position", "load", "tilt")
 # Values of a case without influence on its dry contact
 FILM_ONLY = ("motion.body_speed", "motion.roller_speed", "motion.speed", "lubricant")
-CASE_PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
+CASE_PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a whole
 # Types of entries in the attributes of inputs and run
 ATTRIBUTE_TYPES: dict[str, type | tuple[type, ...]] = {
     **dict.fromkeys(("seconds", "accuracy", "tolerance"), Real),
@@ -42,22 +42,22 @@ def with_provenance(
     result: xr.Dataset, case: Case, settings: Mapping[str, Any], stages: Mapping[str, float]
 ) -> xr.Dataset:
     """Return a result with case, settings, versions and seconds of each stage in its attributes."""
-    now = datetime.now(UTC).isoformat(timespec="seconds")
+    timestamp = datetime.now(UTC).isoformat(timespec="seconds")
     rounded_seconds = {name: round(seconds, 4) for name, seconds in stages.items()}
     inputs = {"case": to_dict(case), "settings": dict(settings)}
-    run = {**versions(), "time": now, "seconds": round(sum(stages.values()), 4), "stages": rounded_seconds}
+    run = {**versions(), "time": timestamp, "seconds": round(sum(stages.values()), 4), "stages": rounded_seconds}
     return result.assign_attrs({INPUTS_ATTRIBUTE: json.dumps(inputs), RUN_ATTRIBUTE: json.dumps(run)})
 
 
 def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
-    """Return the table in an attribute of a Dataset, without entries of a foreign type; empty without the attribute."""
+    """Return the table in an attribute of a Dataset, without entries of a wrong type; empty without the attribute."""
     try:
         table = json.loads(dataset.attrs.get(name, "{}"))
     except (TypeError, ValueError):
         raise InvalidInputError(f"attribute {name}", str(dataset.attrs[name])[:60], "JSON") from None
     if not isinstance(table, dict):
         return {}
-    return _without_malformed(table) if name in (INPUTS_ATTRIBUTE, RUN_ATTRIBUTE) else table
+    return _drop_invalid_entries(table) if name in (INPUTS_ATTRIBUTE, RUN_ATTRIBUTE) else table
 
 
 def study_title(study: Mapping[str, Any], name: str) -> str:
@@ -66,13 +66,13 @@ def study_title(study: Mapping[str, Any], name: str) -> str:
     return f"{title}: {study['description']}" if study.get("description") else title
 
 
-def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
-    """Table, with its nested tables, without entries of a foreign type."""
-    foreign = {name for name, kind in ATTRIBUTE_TYPES.items() if name in table and not isinstance(table[name], kind)}
+def _drop_invalid_entries(table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table and its nested tables without entries of a wrong type."""
+    invalid = {name for name, kind in ATTRIBUTE_TYPES.items() if name in table and not isinstance(table[name], kind)}
     return {
-        name: _without_malformed(value) if name in ("settings", "case", "roller") else value
+        name: _drop_invalid_entries(value) if name in ("settings", "case", "roller") else value
         for name, value in table.items()
-        if name not in foreign
+        if name not in invalid
     }
 
 
@@ -112,9 +112,9 @@ def solved_case(dataset: xr.Dataset) -> Case:
 
 
 def check_solved_for(
-    result: xr.Dataset, case_or_body: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
+    result: xr.Dataset, case_or_body: Case | Body, argument: str = "result", *, compared_names: tuple[str, ...] = ()
 ) -> None:
-    """Raise if the case (or body) of a result differs from the given case (or body); `only` names compared parts."""
+    """Raise if the case (or body) of a result differs from the given case (or body), by default in any value."""
     try:
         stored_case = from_dict(attribute(result, INPUTS_ATTRIBUTE)["case"], Case)
     except (InvalidInputError, KeyError, TypeError):
@@ -127,14 +127,14 @@ def check_solved_for(
             for name, variable in variables.items()
             if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
         }
-        actual, expected = _comparable(stored_case) | scalars, _comparable(case_or_body)
+        actual, expected = _comparable_values(stored_case) | scalars, _comparable_values(case_or_body)
     else:
         actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (stored_case.body, case_or_body))
     names = [
         name
         for name in {**actual, **expected}
-        if (not only or name.startswith(only))
-        and not _equal(actual.get(name), expected.get(name))
+        if (not compared_names or name.startswith(compared_names))
+        and not _are_equal(actual.get(name), expected.get(name))
         and not (name in DEPENDENT_INPUTS and None in (actual.get(name), expected.get(name)))
         and not name.startswith(FILM_ONLY)
     ]
@@ -142,13 +142,13 @@ def check_solved_for(
         kind = "case" if isinstance(case_or_body, Case) else "body"
         raise InvalidInputError(
             argument,
-            f"solved with {_texts(actual, stored_case, names)}",
-            f"a result of the given {kind}, {_texts(expected, case_or_body, names)}",
+            f"solved with {_describe_values(actual, stored_case, names)}",
+            f"a result of the given {kind}, {_describe_values(expected, case_or_body, names)}",
             f"if the Dataset was joined or changed, drop its attribute {INPUTS_ATTRIBUTE}",
         )
 
 
-def _comparable(case: Case) -> dict[str, Any]:
+def _comparable_values(case: Case) -> dict[str, Any]:
     """Values of a case by name; cases with equal contacts have equal values, however the contacts are prescribed."""
     values = dict(_leaves(to_dict(case))) | {"end_distance": case.roller_start}
     for name in ("load", "max_pressure"):
@@ -173,18 +173,18 @@ def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, entry
 
 
-def _texts(values: Mapping[str, Any], case_or_body: Case | Body, names: list[str]) -> str:
+def _describe_values(values: Mapping[str, Any], case_or_body: Case | Body, names: list[str]) -> str:
     """Text of the first three named values, or of the part of the case that contains a value."""
     texts: dict[str, str] = {}
     for name in names:
-        unit = next((prefix for prefix in CASE_PARTS if name.startswith(prefix)), name)
-        value = values.get(name) if name == unit else attrgetter(unit)(case_or_body)
-        texts[unit] = f"{unit} = {value:.6g}" if isinstance(value, float) else f"{unit} = {value}"
+        case_part = next((prefix for prefix in CASE_PARTS if name.startswith(prefix)), name)
+        value = values.get(name) if name == case_part else attrgetter(case_part)(case_or_body)
+        texts[case_part] = f"{case_part} = {value:.6g}" if isinstance(value, float) else f"{case_part} = {value}"
     return ", ".join(list(texts.values())[:3])
 
 
-def _equal(first: Any, second: Any) -> bool:
+def _are_equal(value: Any, expected: Any) -> bool:
     """Whether two values are equal within rounding."""
-    if isinstance(first, float) and isinstance(second, float):
-        return math.isclose(first, second, rel_tol=RELATIVE_TOLERANCE, abs_tol=ABSOLUTE_TOLERANCE)
-    return bool(first == second)
+    if isinstance(value, float) and isinstance(expected, float):
+        return math.isclose(value, expected, rel_tol=RELATIVE_TOLERANCE, abs_tol=ABSOLUTE_TOLERANCE)
+    return bool(value == expected)

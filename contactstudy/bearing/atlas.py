@@ -36,7 +36,7 @@ def atlas(
     """Interpolate the contact of a rigid roller with a logarithmic profile between free ends (`studies/atlas.py`).
 
     The scales are those of the Hertz line contact: half-width a, pressure p0, load ``P = pi E* a**2 L / (4 R)``.
-    The friction is 0, and approach and tilt refer to the depth of the body's length.
+    The friction is 0, and the approach is relative to a depth equal to the body's length.
 
     Parameters
     ----------
@@ -76,8 +76,8 @@ def atlas(
     groups = xr.broadcast(*(_check_group(name, value, table.ranges[name]) for name, value in arguments.items()))
     points = np.stack([group.values.ravel() for group in groups], axis=1)
     shape, dims = groups[0].shape, groups[0].dims
-    columns = {name: (dims, values.reshape(shape)) for name, values in table.evaluate(points).items()}
-    result = xr.Dataset(columns).assign_coords(dict(zip(GROUPS, groups, strict=True)))
+    variables = {name: (dims, values.reshape(shape)) for name, values in table.evaluate(points).items()}
+    result = xr.Dataset(variables).assign_coords(dict(zip(GROUPS, groups, strict=True)))
     return describe(result, "atlas of logarithmic rollers between free ends")
 
 
@@ -113,7 +113,7 @@ class AtlasTable:
     def coordinates(self, points: FloatArray) -> FloatArray:
         """Coordinates of points (point, group) from 0 to 1, over which the quantities vary evenly."""
         lows, highs = np.array([self.ranges[name] for name in GROUPS]).T
-        low, value, high = (even_variation(np.atleast_2d(groups)) for groups in (lows, points, highs))
+        low, value, high = (transform_groups(np.atleast_2d(groups)) for groups in (lows, points, highs))
         return np.asarray((value - low) / (high - low))
 
     @cached_property
@@ -139,12 +139,12 @@ class AtlasTable:
         if name not in self._interpolators:
             nodes, samples = self.scale(name, self.points), self.interpolated_samples(name)
             self._interpolators[name] = [
-                RBFInterpolator(nodes[members], samples[members], kernel="cubic", degree=2) for members in branches
+                RBFInterpolator(nodes[mask], samples[mask], kernel="cubic", degree=2) for mask in branches
             ]
         _, nearest = cKDTree(self.points).query(coordinates, NEIGHBOUR_COUNT)
-        scaled = self.scale(name, coordinates)
-        values = [interpolator(scaled) for interpolator in self._interpolators[name]]
-        return np.where([members[nearest].any(axis=1) for members in branches], values, -np.inf)
+        scaled_coordinates = self.scale(name, coordinates)
+        values = [interpolator(scaled_coordinates) for interpolator in self._interpolators[name]]
+        return np.where([mask[nearest].any(axis=1) for mask in branches], values, -np.inf)
 
     def scale(self, name: str, coordinates: FloatArray) -> FloatArray:
         """Coordinates (point, group) whose distances measure the variation of a quantity."""
@@ -155,32 +155,34 @@ class AtlasTable:
         values = self.branch_values(name, coordinates)
         return values.max(axis=0), values.argmax(axis=0)
 
-    def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray, first: int = 0) -> FloatArray:
-        """Mean residual of the nearest points of the same branch, from the `first` nearest on."""
+    def local_residual(
+        self, name: str, coordinates: FloatArray, branch: IntArray, omitted_count: int = 0
+    ) -> FloatArray:
+        """Mean residual of the nearest points of the same branch, without the `omitted_count` nearest."""
         residuals, local_residuals = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
-        points, scaled = self.scale(name, self.points), self.scale(name, coordinates)
-        for branch_index, members in enumerate(self.branches(name)):
+        points, scaled_coordinates = self.scale(name, self.points), self.scale(name, coordinates)
+        for branch_index, mask in enumerate(self.branches(name)):
             in_branch = branch == branch_index
             if in_branch.any():
-                _, nearest = cKDTree(points[members]).query(scaled[in_branch], first + RESIDUAL_COUNT)
-                local_residuals[in_branch] = residuals[members][nearest[:, first:]].mean(axis=1)
+                _, nearest = cKDTree(points[mask]).query(scaled_coordinates[in_branch], omitted_count + RESIDUAL_COUNT)
+                local_residuals[in_branch] = residuals[mask][nearest[:, omitted_count:]].mean(axis=1)
         return local_residuals
 
     def evaluate(self, points: FloatArray) -> dict[str, FloatArray]:
         """Quantities and their errors at points (point, group)."""
         coordinates, ratios = self.coordinates(points), {}
         for name in QUANTITIES:
-            interpolated, branch = self.interpolate(name, coordinates)
+            interpolated_values, branch = self.interpolate(name, coordinates)
             attributes = self.dataset[name].attrs
             local_residual = self.local_residual(name, coordinates, branch)
             error = np.hypot(attributes["coverage_factor"] * local_residual, attributes["solver_error"])
             is_logarithmic = name in LOGARITHMIC_QUANTITIES
-            ratios[name] = np.exp(interpolated) if is_logarithmic else np.maximum(interpolated, 0.0)
+            ratios[name] = np.exp(interpolated_values) if is_logarithmic else np.maximum(interpolated_values, 0.0)
             ratios[f"{name}_error"] = error * ratios[name] if is_logarithmic else error
         return ratios
 
 
-def even_variation(points: FloatArray) -> FloatArray:
+def transform_groups(points: FloatArray) -> FloatArray:
     """Transform groups (point, group) to coordinates over which the quantities vary evenly."""
     length, distance, crown, tilt, poisson = points.T
     return np.stack([np.log(length), np.sqrt(distance), np.log(crown), tilt, poisson], axis=1)

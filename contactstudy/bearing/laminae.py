@@ -58,8 +58,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     -------
     Dataset
         Along `x` (middle of each slice, metres from end I of the body): `load_per_length` (N/m), `pressure` (Pa),
-        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m). Their
-        errors are not estimated.
+        `half_width` (m), `deflection` (m), `edge_factor`; the scalars `normal_load` (N), `approach` (m). No errors.
 
     Raises
     ------
@@ -101,19 +100,19 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     height = check_drop(roller.profile, x_from_middle, roller.length) - np.tan(tilt) * x_from_middle
     stiffness = SPRING_CONSTANT * length ** (8 / 9) / slices * (case.modulus / STEEL_MODULUS)
     load = case.normal_load
-    # `bound`: approach beyond the smallest height at which a single slice carries the whole load
+    # At `max_depth` beyond the smallest height a single slice carries the whole load.
     min_height, max_depth = float(height.min()), 0.5 * (load / stiffness) ** (1 / POWER)
     max_approach = min_height + 1.001 * max_depth
 
-    def excess(approach: float) -> float:
+    def load_excess(approach: float) -> float:
         return float(stiffness * np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER) / load - 1)
 
-    approach = float(brentq(excess, min_height, max_approach, xtol=1e-15 * max_depth, rtol=1e-14, maxiter=200))
+    approach = float(brentq(load_excess, min_height, max_approach, xtol=1e-15 * max_depth, rtol=1e-14, maxiter=200))
     deflection = np.maximum(approach - height, 0.0)
     load_per_length = stiffness * (2 * deflection) ** POWER * slices / length
-    from_middle = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
+    middle_distance = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
     with np.errstate(divide="ignore"):
-        edge_factor = 1 - 0.01 / np.log(1.985 * from_middle)  # 1 in the middle
+        edge_factor = 1 - 0.01 / np.log(1.985 * middle_distance)  # 1 in the middle
     radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_load = load_per_length * edge_factor if edge_riser else load_per_length
     pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
@@ -132,8 +131,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     return describe(result, "slice model of ISO/TS 16281")
 
 
-# Power with which a lamina's risk of fatigue grows with load: the life exponent 4 of a line contact times the slope
-# 9/8 of Weibull's distribution
+# Power of the load in a lamina's risk of fatigue: life exponent 4 of a line contact times Weibull's slope 9/8
 LIFE_POWER = 9 / 2
 
 
@@ -193,10 +191,10 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     start, stop = case.contact_range
     edges = np.linspace(start, stop, count + 1)
     load, error, common_error = _hertz_loads(solution, case, edges)
-    sliced_load = slice_result["load_per_length"].values
+    model_load = slice_result["load_per_length"].values
     with np.errstate(divide="ignore", invalid="ignore"):
-        riser = np.where(sliced_load > 0, load / sliced_load, np.nan)
-        riser_error = np.where(sliced_load > 0, error / sliced_load, np.nan)
+        riser = np.where(model_load > 0, load / model_load, np.nan)
+        riser_error = np.where(model_load > 0, error / model_load, np.nan)
     model_attributes = {"comment": MODEL_COMMENT}
     error_attributes = {"comment": "from the stated errors of the pressure and the distance of its columns"}
     if np.isnan(error).any():
@@ -204,19 +202,19 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     values: dict[str, tuple[object, ...]] = {
         "position": ("slice", 0.5 * (edges[1:] + edges[:-1])),
         "width": ("slice", np.full(count, (stop - start) / count)),
-        "load_per_length": ("slice", sliced_load, model_attributes),
+        "load_per_length": ("slice", model_load, model_attributes),
         "hertz_load_per_length": ("slice", load),
         "hertz_load_per_length_error": ("slice", error, error_attributes),
         "stress_riser": ("slice", riser),
         "stress_riser_error": ("slice", riser_error, error_attributes),
         "edge_factor": ("slice", slice_result["edge_factor"].values, model_attributes),
     }
-    labelled = xr.Dataset(values, coords={"slice": np.arange(1, count + 1)})
-    return describe(labelled, "stress riser of every lamina from solved pressures"), common_error
+    factors = xr.Dataset(values, coords={"slice": np.arange(1, count + 1)})
+    return describe(factors, "stress riser of every lamina from solved pressures"), common_error
 
 
 def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Hertz load per length of each lamina's solved pressure, its error, and the error without that of columns."""
+    """Hertz load per length of each lamina's solved pressure, its error, and the error without discretisation error."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
@@ -227,12 +225,12 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     columns = Columns(np.stack(cell_edges(pressure, "x"), axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)
     # Errors that follow from the stated errors of the largest pressure in either half
-    half_count, weights = load.size // 2, columns.overlaps(edges)
+    half_count, overlaps = load.size // 2, columns.overlaps(edges)
     halves = (slice(load.size - half_count), slice(half_count, None))
     is_singular = [bool(np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))) for side in SIDES]
     errors = np.zeros((2, load.size))
     for row, half, singular, relative_error in zip(errors, halves, is_singular, pressure_errors(result), strict=True):
-        max_load = load[half] if singular else line_loads[weights[half].any(axis=0)].max()
+        max_load = load[half] if singular else line_loads[overlaps[half].any(axis=0)].max()
         # The load is proportional to the square of the pressure.
         row[half] = 2 * relative_error * np.sqrt(load[half] * max_load)
     common_error = errors.max(axis=0)
@@ -247,8 +245,8 @@ MODELS = ("slices", "slices with riser", "half-space", "free ends")  # Models of
 RACEWAYS = ("inner", "outer")
 
 TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other raceway LIFE_POWER
-# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: an allowance for edge stress,
-# which the lamina model contains
+# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings (from secondary sources): allowance for edge
+# stress, which the lamina model contains
 RATING_REDUCTION = 0.83
 
 
@@ -319,9 +317,8 @@ def reference_life(
     Parameters
     ----------
     inner, outer : Case or sequence of Case
-        Loaded rollers on either raceway, with load and tilt; a single Case represents all rollers. The radius of its
-        roller is that relative to the raceway: ``D (1 - gamma) / 2`` inside, ``D (1 + gamma) / 2``
-        outside.
+        Loaded rollers on either raceway, with load and tilt; a single Case represents all rollers. The roller has its
+        radius relative to the raceway: ``D (1 - gamma) / 2`` inside, ``D (1 + gamma) / 2`` outside.
     ratings : tuple of float
         Dynamic load ratings ``Q_ci`` and ``Q_ce`` of a roller, N, see :func:`roller_ratings`.
     rollers : int, optional
@@ -382,11 +379,11 @@ def reference_life(
     if checked_ratings.size != len(RACEWAYS) or (checked_ratings <= 0).any():
         raise InvalidInputError("ratings", checked_ratings.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
     # Arrays (model, raceway, roller, lamina).
-    rollers_loads = [[_solve_roller_loads(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
-    loads, errors, common_errors, risers, riser_errors = np.array(rollers_loads).transpose(2, 3, 0, 1, 4)
+    roller_tables = [[_solve_roller_loads(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
+    loads, errors, common_errors, risers, riser_errors = np.array(roller_tables).transpose(2, 3, 0, 1, 4)
     lamina_count = loads.shape[-1]
     powers = np.array([TURNING_POWER if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
-    rating = checked_ratings[:, None] * lamina_count ** (-7 / 9)
+    lamina_ratings = checked_ratings[:, None] * lamina_count ** (-7 / 9)
 
     def equivalent_loads(roller_loads: FloatArray) -> FloatArray:
         """Equivalent loads (model, raceway, lamina) of the rollers."""
@@ -394,7 +391,8 @@ def reference_life(
         return np.asarray(((roller_loads**power).sum(axis=2) / roller_count) ** (1 / powers))
 
     mean_loads, upper_loads = equivalent_loads(loads), equivalent_loads(loads + errors)
-    risks = [((equivalent_loads(q) / rating) ** LIFE_POWER).sum(axis=-1) for q in (loads, loads + common_errors)]
+    load_bounds = (loads, loads + common_errors)
+    risks = [((equivalent_loads(bound) / lamina_ratings) ** LIFE_POWER).sum(axis=-1) for bound in load_bounds]
     raceway_lives, lower_raceway_lives = (1e6 * risk ** (-8 / 9) for risk in risks)
     lives, lower_lives = (1e6 * risk.sum(axis=-1) ** (-8 / 9) for risk in risks)
     is_infinite = np.isinf(mean_loads)
@@ -428,24 +426,23 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
     exact_result = solve(case, stresses=False, accuracy=accuracy)
     # The models have equal moments; their tilts differ by the compliance of the bodies.
-    position = float(exact_result["load_position"]) if case.tilt else case.load_position
+    load_position = float(exact_result["load_position"]) if case.tilt else case.load_position
     body, roller = HalfSpace(material=case.body.material), replace(case.roller, ends="none")
     start = case.roller_start
-    infinite = replace(case, body=body, roller=roller, end_distance=start, tilt=0.0, load_position=position)
-    half_space = solve(infinite, stresses=False, accuracy=accuracy)
-    tables, common_errors = zip(
-        *(lamina_loads(result, model, laminae) for model, result in ((infinite, half_space), (case, exact_result))),
-        strict=True,
-    )
-    width, slices = tables[1]["width"].values, tables[1]["load_per_length"].values
-    riser, no_errors = tables[1]["edge_factor"].values, [np.full_like(slices, np.nan)] * 2
+    half_space_case = replace(case, body=body, roller=roller, end_distance=start, tilt=0.0, load_position=load_position)
+    half_space_result = solve(half_space_case, stresses=False, accuracy=accuracy)
+    solved_models = ((half_space_case, half_space_result), (case, exact_result))
+    solved_loads = (lamina_loads(result, model, laminae) for model, result in solved_models)
+    tables, common_errors = zip(*solved_loads, strict=True)
+    width, model_loads = tables[1]["width"].values, tables[1]["load_per_length"].values
+    riser, unknown_errors = tables[1]["edge_factor"].values, [np.full_like(model_loads, np.nan)] * 2
+    hertz_loads = [factors["hertz_load_per_length"].values for factors in tables]
     return np.array(
         [
-            width
-            * np.array([slices, slices * riser, *(factors["hertz_load_per_length"].values for factors in tables)]),
-            width * np.array([*no_errors, *(factors["hertz_load_per_length_error"].values for factors in tables)]),
-            width * np.array([*no_errors, *common_errors]),
-            [np.ones_like(slices), riser, *(factors["stress_riser"].values for factors in tables)],
-            [*no_errors, *(factors["stress_riser_error"].values for factors in tables)],
+            width * np.array([model_loads, model_loads * riser, *hertz_loads]),
+            width * np.array([*unknown_errors, *(factors["hertz_load_per_length_error"].values for factors in tables)]),
+            width * np.array([*unknown_errors, *common_errors]),
+            [np.ones_like(model_loads), riser, *(factors["stress_riser"].values for factors in tables)],
+            [*unknown_errors, *(factors["stress_riser_error"].values for factors in tables)],
         ]
     )

@@ -18,13 +18,13 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled numbers
-Pair = tuple[xr.DataArray, xr.DataArray]  # Approach and tilt
+Position = tuple[xr.DataArray, xr.DataArray]  # Approach and tilt
 UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}  # Units of the arguments
 
 
 def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
     """Broadcast arguments; the dimension of a sequence has the argument's name."""
-    labelled = [_label_argument(*item) for item in values.items()]
+    labelled = [_label_argument(*argument) for argument in values.items()]
     for dim in {str(dim) for argument in labelled for dim in argument.dims}:
         indexes = [argument.indexes[dim] for argument in labelled if dim in argument.indexes]
         if any(set(labels) != set(indexes[0]) for labels in indexes):
@@ -53,7 +53,7 @@ def _label_argument(name: str, value: Values) -> xr.DataArray:
 
 
 # Arguments of `apply_ufunc` for a function that returns two numbers
-PAIR: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True, "output_dtypes": [float, float]}
+TWO_OUTPUTS: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True, "output_dtypes": [float, float]}
 
 
 def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
@@ -78,8 +78,8 @@ def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: ContactResp
         "moment_error": errors[1] * motion.normal_load,
     }
     coords = {str(name): coordinate for name, coordinate in approach.coords.items()}
-    data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
-    labelled = describe(xr.Dataset(data, coords=coords))
+    variables = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
+    labelled = describe(xr.Dataset(variables, coords=coords))
     return without_error(labelled, *STIFFNESSES)
 
 
@@ -94,7 +94,7 @@ def find_root(
     scales: FloatArray,
     jacobian: Callable[[FloatArray], FloatArray] | str = "2-point",
 ) -> tuple[float, float] | None:
-    """Return the approach and tilt between `bounds` (bound, 2), over `scales`, without a residual; None if none has."""
+    """Return the approach and tilt within `bounds` (bound, 2) whose scaled `residual` vanishes; None without a root."""
     from scipy.optimize import least_squares
 
     low, high = bounds / scales
@@ -106,7 +106,7 @@ def find_root(
 
 
 # Required variables of a table
-KEYS = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
+REQUIRED = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,7 @@ class ContactLaw:
     table: xr.Dataset
 
     def __post_init__(self) -> None:
-        require(self.table, *KEYS, argument="table")
+        require(self.table, *REQUIRED, argument="table")
         for name in ("approach", "tilt"):
             if self.table.sizes.get(name, 0) < MIN_NODES:
                 raise InvalidInputError("table", dict(self.table.sizes), f"one with {MIN_NODES} or more along {name}")
@@ -193,8 +193,7 @@ class ContactLaw:
         approach : float, sequence or DataArray
             Approach at the roller's mid-length, metres, relative to the table's reference.
         tilt : float, sequence or DataArray
-            Radians, positive if the end at larger x is deeper. Two sequences give a table; DataArrays are paired along
-            their common dimensions.
+            Radians, positive if the end at larger x is deeper. Two sequences give a table; DataArrays are broadcast.
 
         Returns
         -------
@@ -212,10 +211,10 @@ class ContactLaw:
         for name, values in (("approach", delta), ("tilt", theta)):
             low, high = self.range_of(name)
             tolerance = ROUNDING * (high - low)
-            outer_values = values.values[(values.values < low - tolerance) | (values.values > high + tolerance)]
-            if outer_values.size:
+            outside_values = values.values[(values.values < low - tolerance) | (values.values > high + tolerance)]
+            if outside_values.size:
                 allowed = f"in the table, from {low:g} to {high:g} {UNITS[name]}"
-                raise InvalidInputError(name, float(outer_values[0]), allowed)
+                raise InvalidInputError(name, float(outside_values[0]), allowed)
         position = delta.values, theta.values
         return label_motion(delta, theta, self.motion(*position), self.errors(*position)).assign(self.references)
 
@@ -238,7 +237,7 @@ class ContactLaw:
             If approach and tilt are outside the table.
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
-        delta, theta = xr.apply_ufunc(self.solve_position, loads, moments, **PAIR)
+        delta, theta = xr.apply_ufunc(self.solve_position, loads, moments, **TWO_OUTPUTS)
         position = delta.values, theta.values
         motion = label_motion(delta, theta, self.motion(*position), self.errors(*position)).assign(self.references)
         return add_position_errors(motion)
@@ -293,8 +292,8 @@ class ContactLaw:
 
     @cached_property
     def _nodes(self) -> Nodes:
-        fields = (self._node_values(name) for name in ("strain_energy", "normal_load", "moment"))
-        return Nodes(self.table["approach"].values, self.table["tilt"].values, *fields)
+        node_arrays = (self._node_values(name) for name in ("strain_energy", "normal_load", "moment"))
+        return Nodes(self.table["approach"].values, self.table["tilt"].values, *node_arrays)
 
     @cached_property
     def _spline(self) -> EnergySpline:
@@ -327,9 +326,8 @@ class Raceways:
 
     Notes
     -----
-    Load and moment about mid-length are equal in both contacts, without centrifugal force and flange. Approaches
-    and tilts add up to the motion of the outer raceway relative to the inner raceway. The contacts deform an elastic
-    roller independently.
+    Load and moment about mid-length are equal in both contacts, without centrifugal force and flange. Approaches and
+    tilts add up to the relative motion of the raceways. The contacts deform an elastic roller independently.
 
     Examples
     --------
@@ -362,7 +360,7 @@ class Raceways:
             If either contact is outside its table.
         """
         delta, theta = broadcast_arguments(approach=approach, tilt=tilt)
-        inner = xr.apply_ufunc(self._solve_inner_position, delta, theta, **PAIR)
+        inner = xr.apply_ufunc(self._solve_inner_position, delta, theta, **TWO_OUTPUTS)
         return self._label_series(inner, (delta - inner[0], theta - inner[1]))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
@@ -374,23 +372,24 @@ class Raceways:
             If either contact is outside its table.
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
-        contacts = (xr.apply_ufunc(law.solve_position, loads, moments, **PAIR) for law in (self.inner, self.outer))
+        laws = (self.inner, self.outer)
+        contacts = (xr.apply_ufunc(law.solve_position, loads, moments, **TWO_OUTPUTS) for law in laws)
         return add_position_errors(self._label_series(*contacts))
 
-    def _label_series(self, inner: Pair, outer: Pair) -> xr.Dataset:
+    def _label_series(self, inner: Position, outer: Position) -> xr.Dataset:
         """Label the series of two contacts at given approaches and tilts."""
-        pairs = [(self.inner, *inner), (self.outer, *outer)]
-        contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
+        law_positions = [(self.inner, *inner), (self.outer, *outer)]
+        contacts = [law.motion(delta.values, theta.values) for law, delta, theta in law_positions]
         # Compliances add up.
         matrices = [np.array([[normal, coupling], [coupling, tilting]]).T for *_, normal, coupling, tilting in contacts]
         (normal, _), (coupling, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
         motion = contacts[0]._replace(normal_stiffness=normal, coupling_stiffness=coupling, tilting_stiffness=tilting)
         # The larger of the two errors bounds the error of either contact.
-        errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
+        errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in law_positions))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
-        for side, (law, delta, theta) in zip(("inner", "outer"), pairs, strict=True):
+        for raceway, (law, delta, theta) in zip(("inner", "outer"), law_positions, strict=True):
             for name, values in {"approach": delta, "tilt": theta, **law.references}.items():
-                labelled[f"{side}_{name}"] = (values.dims, values.values)
+                labelled[f"{raceway}_{name}"] = (values.dims, values.values)
         return describe(labelled)
 
     def _solve_inner_position(self, approach: float, tilt: float) -> tuple[float, float]:

@@ -73,7 +73,7 @@ def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray
     LOGGER.info(
         "%d contacts at %d approaches and %d tilts", len(columns) * approaches.size, approaches.size, len(columns)
     )
-    # From the least tilt on, the first guesses at each tilt are the loads at the tilt before.
+    # The first guesses at each tilt are the loads at the preceding tilt; the first tilt is the least.
     for index in sorted(columns, key=lambda index: abs(index - start_column)):
         neighbour = index + int(np.sign(start_column - index))
         for row in range(approaches.size - 1, -1, -1):
@@ -97,7 +97,7 @@ def _is_symmetric(solver: ContactSolver) -> bool:
     is_centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= TOLERANCE * length
     offsets = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (
-        case.roller.clearance(side * offsets, np.array([0.0, 1e-2 * length])) for side in (1, -1)
+        case.roller.clearance(sign * offsets, np.array([0.0, 1e-2 * length])) for sign in (1, -1)
     )
     return bool(is_centred) and bool(np.allclose(second_half, first_half, rtol=TOLERANCE, atol=0.0))
 
@@ -109,7 +109,7 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     length = solver.case.contact_length
     errors = np.zeros(2)
     tilt_sizes = np.abs(nodes.tilts)
-    # The loop solves the last of two opposite tilts; the first may be a reflection.
+    # Of two opposite tilts the last is solved; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.normal_load[-1, index], nodes.moment[-1, index]
         position = float(nodes.approaches[-1]), float(nodes.tilts[index])
@@ -149,8 +149,7 @@ def contact_law(
     ContactLaw
         Its `table` is a Dataset along `approach` and `tilt`: `normal_load`, `moment`, `strain_energy`,
         `normal_stiffness`, `coupling_stiffness`, `tilting_stiffness`; and `relative_load_error` (over the load) and
-        `relative_moment_error` (over load times length), the sum of the errors of interpolation up to the next nodes,
-        and of discretisation.
+        `relative_moment_error` (over load times length), sums of the errors of interpolation and discretisation.
 
     Raises
     ------

@@ -18,13 +18,13 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import STRESSES, require, variable_of
 from contactstudy.checks import Array, FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import AXIS_MEANINGS, Units, cap_field, near_singular, singular_ends
+from contactstudy.plots.style import AXIS_MEANINGS, Units, cap_field, is_near_singular_end, singular_ends
 from contactstudy.study import collect
 from contactstudy.study.folder import Folder
 
 CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
 FIELDS = ("pressure", "gap", "initial_gap", "von_mises", *STRESSES)  # Fields that a loaded case keeps in memory
-STATUS = {  # Sentence for each status without figures
+STATUS_SENTENCES = {  # Sentence for each status without figures
     "failed": "This case failed.",
     "skipped": "This case cannot be solved.",
     "excluded": "The study leaves this case out.",
@@ -32,7 +32,7 @@ STATUS = {  # Sentence for each status without figures
 }
 
 MAX_CACHED_CASES = 16  # Largest number of loaded cases in memory. Speed
-SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a final underscore is a prefix
+SUBJECTS: dict[str, tuple[str, ...]] = {  # names of numbers in order; a final underscore marks a prefix
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
     "stresses": ("peak_von_mises", "peak_von_mises_z", "peak_von_mises_x", "peak_von_mises_y", "peak_"),
     "film": (
@@ -53,7 +53,7 @@ SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a fina
         *("force_y", "force_x", "moment_z", "longitudinal_creepage", "lateral_creepage", "spin", "shift_y", "shift_x"),
         *("sticking_part", "friction_work"),
     ),
-    "further numbers": (),  # all that the other subjects lack
+    "further numbers": (),  # numbers without another subject
     "cells and iteration": ("end_traction_residual", "converged", "iterations", "friction_steps"),
     "solution": ("seconds",),
 }
@@ -72,7 +72,7 @@ class CaseFields:
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self.stress = cache(partial(measure, dataset))  # by its name
+        self.compute_measure = cache(partial(measure, dataset))  # from the measure's name
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
             self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
@@ -104,12 +104,12 @@ class Cases:
         values = self.scalars[dim].values
         units = str(self.scalars[dim].attrs.get("units", "1"))
         columns = [
-            [f"{name}={value}" for value in entry.values]
-            for name, entry in self.scalars.coords.items()
-            if entry.dims == (dim,) and name != dim and "comment" not in entry.attrs
+            [f"{name}={value}" for value in coordinate.values]
+            for name, coordinate in self.scalars.coords.items()
+            if coordinate.dims == (dim,) and name != dim and "comment" not in coordinate.attrs
         ]
         if dim == "case" and columns:
-            texts = [", ".join(entries) for entries in zip(*columns, strict=True)]
+            texts = [", ".join(case_texts) for case_texts in zip(*columns, strict=True)]
         else:
             texts = [
                 str(value) if isinstance(value, (bool, np.bool_, str)) else format_quantity(float(value), units, 6)
@@ -117,10 +117,10 @@ class Cases:
             ]
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
 
-    def first_solved(self) -> dict[str, int]:
+    def start_values(self) -> dict[str, int]:
         """Index of the first solved case, by swept parameter."""
-        solved = np.argwhere(np.isin(self.scalars["status"].values, ("ok", "stale")))
-        index = solved[0].tolist() if len(solved) else [0] * len(self.dims)
+        solved_indices = np.argwhere(np.isin(self.scalars["status"].values, ("ok", "stale")))
+        index = solved_indices[0].tolist() if len(solved_indices) else [0] * len(self.dims)
         return dict(zip(self.dims, index, strict=True))
 
     def status(self, index: CaseIndex) -> tuple[str, str]:
@@ -131,19 +131,19 @@ class Cases:
 
 def status_sentence(status: str, reason: str) -> str:
     """Return the reason why a case has no figures, as a sentence."""
-    return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
+    return f"{STATUS_SENTENCES.get(status, f'This case is {status}.')} {reason}".rstrip()
 
 
 def open_cases(study: xr.Dataset | str | Path) -> Cases:
     """Return the cases of an opened study, of a result, or of a study's folder."""
     if not isinstance(study, xr.Dataset):
-        cases = _cases_of_folder(Path(study))
+        cases = _open_folder(Path(study))
     else:
-        cases = _cases_of_study(study) if "status" in study else _case_of_result(study)
+        cases = _open_study(study) if "status" in study else _open_result(study)
     return replace(cases, load=lru_cache(maxsize=MAX_CACHED_CASES)(cases.load))
 
 
-def _cases_of_folder(folder: Path) -> Cases:
+def _open_folder(folder: Path) -> Cases:
     """Cases in a study's folder; each file is read on demand."""
     scalars, results = collect(folder).squeeze(), Folder(folder).results()
 
@@ -153,7 +153,7 @@ def _cases_of_folder(folder: Path) -> Cases:
     return Cases(scalars, load, study_title(attribute(scalars, STUDY_ATTRIBUTE), folder.name))
 
 
-def _case_of_result(result: xr.Dataset) -> Cases:
+def _open_result(result: xr.Dataset) -> Cases:
     """Return a result of one case as a study."""
     require(result, "pressure")
     case = single_case(result)
@@ -163,7 +163,7 @@ def _case_of_result(result: xr.Dataset) -> Cases:
     return Cases(scalars, lambda index: fields, str(result.attrs.get("title", "result")))
 
 
-def _cases_of_study(study: xr.Dataset) -> Cases:
+def _open_study(study: xr.Dataset) -> Cases:
     """Cases of an opened study."""
     study = study.squeeze([dim for dim in study["status"].dims if study.sizes[dim] == 1])
     dims = study["status"].dims
@@ -189,12 +189,12 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
     ]
     meanings = [variable_of(name, scalars[name].attrs).long_name for name in names]
 
-    entries = [(subject, entry) for subject, members in SUBJECTS.items() for entry in members or ("",)]
-    further = entries.index(("further numbers", ""))
+    entries = [(subject, entry) for subject, group in SUBJECTS.items() for entry in group or ("",)]
+    default_rank = entries.index(("further numbers", ""))
 
     def rank(name: str) -> int:
         is_member = (name == entry or (entry.endswith("_") and name.startswith(entry)) for _, entry in entries)
-        return next((index for index, member in enumerate(is_member) if member), further)
+        return next((index for index, member in enumerate(is_member) if member), default_rank)
 
     groups: dict[str, dict[str, str]] = {}
     for index, name, meaning in sorted((rank(name), name, text) for name, text in zip(names, meanings, strict=True)):
@@ -209,9 +209,9 @@ class Line(NamedTuple):
 
     x: FloatArray
     pressure: FloatArray
-    singular: list[float]
+    singular_ends: list[float]
     span: Span
-    names: tuple[str, str]
+    axis_labels: tuple[str, str]
 
 
 class Image(NamedTuple):
@@ -220,8 +220,8 @@ class Image(NamedTuple):
     values: Array
     horizontal: Span
     vertical: Span
-    limit: float
-    names: tuple[str, str]
+    color_limit: float
+    axis_labels: tuple[str, str]
     has_depth: bool  # whether the vertical axis is the depth, which points downwards
     largest: tuple[float, float, float]  # size and position of the largest value, which pixels may miss
     position: str = ""
@@ -237,78 +237,78 @@ def choose_scale(case: CaseFields, *, relative: bool) -> Units:
 def region_limits(case: CaseFields, name: str) -> Span:
     """Return the limits of a region along the axis, metres."""
     low, high = float(case.x.min()), float(case.x.max())
-    loaded = case.x[case.axial_pressure > 0]
-    if name == REGIONS[0] or not loaded.size or case.hertz is None:
+    loaded_x = case.x[case.axial_pressure > 0]
+    if name == REGIONS[0] or not loaded_x.size or case.hertz is None:
         return low, high
     length = END_REGION * case.hertz[0]
-    end, before = (loaded[0], 0.25) if name == REGIONS[1] else (loaded[-1], 0.75)
-    return max(low, end - before * length), min(high, end + (1 - before) * length)
+    end, fraction_before = (loaded_x[0], 0.25) if name == REGIONS[1] else (loaded_x[-1], 0.75)
+    return max(low, end - fraction_before * length), min(high, end + (1 - fraction_before) * length)
 
 
 def axial_line(case: CaseFields, scale: Units, limits: Span) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
-    values = np.where(near_singular(case.dataset, case.x), np.nan, case.axial_pressure / scale.stress)
+    values = np.where(is_near_singular_end(case.dataset, case.x), np.nan, case.axial_pressure / scale.stress)
     singular = [end / scale.length for end in case.singular_ends]
-    names = f"{AXIS_MEANINGS['x']}, x{scale.over_length}", f"pressure along the axis{scale.over_stress}"
-    return Line(case.x / scale.length, values, singular, (limits[0] / scale.length, limits[1] / scale.length), names)
+    labels = f"{AXIS_MEANINGS['x']}, x{scale.over_length}", f"pressure along the axis{scale.over_stress}"
+    return Line(case.x / scale.length, values, singular, (limits[0] / scale.length, limits[1] / scale.length), labels)
 
 
 def top_image(case: CaseFields, scale: Units, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
     pressure = case.dataset["pressure"]
     y = positions(pressure, "y").values
-    return _image(pressure, (limits, (float(y[0]), float(y[-1]))), _limit(case, pressure), scale)
+    return _create_image(pressure, (limits, (float(y[0]), float(y[-1]))), _find_color_limit(case, pressure), scale)
 
 
 def plane_image(
-    case: CaseFields, scale: Units, limits: Span, kind: str, fraction: float, *, name: str = "von_mises"
+    case: CaseFields, scale: Units, limits: Span, plane_name: str, fraction: float, *, name: str = "von_mises"
 ) -> Image | None:
-    """Return a stress measure in a plane at a fraction of its points; None without stresses or with too few points."""
+    """Return a stress measure in a plane at a fraction of the range; None without stresses or with too few points."""
     if not case.has_stress:
         return None
-    points, normal = case.points, kind[0]
+    points, normal = case.points, plane_name[0]
     horizontal, vertical = (axis for axis in "xyz" if axis != normal)
     contains_axis = points["y"][0] <= 0 <= points["y"][-1]
     if min(points[horizontal].size, points[vertical].size) < 2 or (normal == "y" and not contains_axis):
         return None
     plane_start, plane_stop = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
     position = 0.0 if normal == "y" else plane_start + fraction * (plane_stop - plane_start)
-    # Beyond the points the stress is constant.
+    # The image continues the stress beyond the outermost points as a constant.
     nearest = float(np.clip(position, points[normal][0], points[normal][-1]))
-    plane = in_plane(case.stress(name).to_dataset(name=name), variables=name, **{normal: nearest})[name]
+    plane = in_plane(case.compute_measure(name).to_dataset(name=name), variables=name, **{normal: nearest})[name]
     left, right = float(points[horizontal][0]), float(points[horizontal][-1])
     if horizontal == "x":
         left, right = max(left, limits[0]), min(right, limits[1])
     spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
-    image = _image(plane, spans, _limit(case, case.stress(name)), scale)
+    image = _create_image(plane, spans, _find_color_limit(case, case.compute_measure(name)), scale)
     unit = scale.over_length.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 
 
-def _limit(case: CaseFields, field: xr.DataArray) -> float:
+def _find_color_limit(case: CaseFields, field: xr.DataArray) -> float:
     """Largest value away from singular ends, or of all values."""
     return max(0.0, float(cap_field(case.dataset, field)[0].max()))
 
 
-def _image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: Units) -> Image:
+def _create_image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: Units) -> Image:
     """Image in the units of the page."""
-    names = axis_dimensions(plane)
-    values = plane.transpose(*names.values()).values
-    axes = tuple(positions(plane, axis).values for axis in names)
-    horizontal_label, vertical_label = (f"{AXIS_MEANINGS[axis]}, {axis}{scale.over_length}" for axis in names)
+    dims = axis_dimensions(plane)
+    values = plane.transpose(*dims.values()).values
+    axes = tuple(positions(plane, axis).values for axis in dims)
+    horizontal_label, vertical_label = (f"{AXIS_MEANINGS[axis]}, {axis}{scale.over_length}" for axis in dims)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
-    # The largest value of the field up to the limit, which may lie between the pixels.
+    # The largest value of the field up to the limit may lie between the pixels.
     in_span = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
-    visible = np.where(in_span[0][:, None] & in_span[1] & (values <= limit), values, -np.inf)
-    row, column = np.unravel_index(int(visible.argmax()), visible.shape)
-    largest = (visible[row, column] / scale.stress, axes[0][row] / scale.length, axes[1][column] / scale.length)
+    visible_values = np.where(in_span[0][:, None] & in_span[1] & (values <= limit), values, -np.inf)
+    row, column = np.unravel_index(int(visible_values.argmax()), visible_values.shape)
+    largest = (visible_values[row, column] / scale.stress, axes[0][row] / scale.length, axes[1][column] / scale.length)
     return Image(
         values=(np.minimum(to_pixels(values, axes, spans), limit) / scale.stress).astype(np.float32),
         horizontal=(left, right),
         vertical=(low, high),
-        limit=limit / scale.stress,
-        names=(horizontal_label, vertical_label),
-        has_depth="z" in names,
+        color_limit=limit / scale.stress,
+        axis_labels=(horizontal_label, vertical_label),
+        has_depth="z" in dims,
         largest=largest if np.isfinite(largest[0]) else (np.nan, np.nan, np.nan),
     )
 

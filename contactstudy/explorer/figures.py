@@ -29,9 +29,9 @@ TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}  # an unbounded value
 
 
-def _new_figure(**options: Any) -> Any:
+def _create_figure(**options: Any) -> Any:
     """Return a figure of the available width."""
-    result = figure(
+    new_figure = figure(
         height=HEIGHT,
         sizing_mode="stretch_width",
         tools=TOOLS,
@@ -40,17 +40,17 @@ def _new_figure(**options: Any) -> Any:
         min_border_left=56,
         **options,
     )
-    result.toolbar.logo = None
-    result.toolbar.autohide = True
-    result.grid.grid_line_color = "#e6eaed"
-    return result
+    new_figure.toolbar.logo = None
+    new_figure.toolbar.autohide = True
+    new_figure.grid.grid_line_color = "#e6eaed"
+    return new_figure
 
 
 class AxialFigure:
     """Pressure along the axis, of one or two cases."""
 
     def __init__(self) -> None:
-        self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self.figure = _create_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         self._lines = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
         self._marks = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
         renderers = []
@@ -58,27 +58,27 @@ class AxialFigure:
             style = {"color": color, "line_width": 2, "line_dash": dash}
             renderers.append(self.figure.line("x", "p", source=self._lines[index], **style))
             self.figure.scatter("x", "p", source=self._marks[index], line_color=color, **TRIANGLE)
-        names = zip(("case", "second case"), renderers, strict=True)
-        items = [LegendItem(label=name, renderers=[renderer]) for name, renderer in names]
+        axis_labels = zip(("case", "second case"), renderers, strict=True)
+        items = [LegendItem(label=name, renderers=[renderer]) for name, renderer in axis_labels]
         self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
         self.figure.add_layout(self._legend, "above")
 
     def show(self, lines: dict[int, Line]) -> None:
-        """Draw the pressure of the cases, 0 or 1, with the labels of the first."""
+        """Draw the pressure of the cases by slot, 0 or 1, with the labels of the first case."""
         start = min((line.span[0] for line in lines.values()), default=0.0)
         stop = max((line.span[1] for line in lines.values()), default=1.0)
         visible_pressures = [line.pressure[(line.x >= start) & (line.x <= stop)] for line in lines.values()]
         peak = max((float(np.nanmax(pressure, initial=0.0)) for pressure in visible_pressures), default=0.0)
         max_pressure = 1.06 * peak if peak > 0 else 1.0
-        for side, (source, marks) in enumerate(zip(self._lines, self._marks, strict=True)):
-            x, pressure, singular, *_ = lines.get(side, ([], [], []))
+        for slot, (source, marks) in enumerate(zip(self._lines, self._marks, strict=True)):
+            x, pressure, singular_positions, *_ = lines.get(slot, ([], [], []))
             source.data = {"x": x, "p": pressure}
-            visible_ends = [end for end in singular if start <= end <= stop]
+            visible_ends = [end for end in singular_positions if start <= end <= stop]
             marks.data = {"x": visible_ends, "p": [0.96 * max_pressure] * len(visible_ends)}
         self._legend.visible = 1 in lines
         self.figure.x_range.update(start=start, end=stop)
         self.figure.y_range.update(start=0.0, end=max_pressure)
-        labels = next((line.names for line in lines.values()), ("", ""))
+        labels = next((line.axis_labels for line in lines.values()), ("", ""))
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
 
@@ -86,12 +86,12 @@ class ImageFigure:
     """Field as an image with a colour bar and a cross at the field's largest value; depths increase downwards."""
 
     def __init__(self) -> None:
-        self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self.figure = _create_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         self._source = ColumnDataSource({"image": [], "x": [], "y": [], "w": [], "h": []})
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self.figure.image(image="image", x="x", y="y", dw="w", dh="h", source=self._source, color_mapper=self._mapper)
-        self._largest = ColumnDataSource({"x": [], "y": []})
-        self.figure.scatter("x", "y", source=self._largest, marker="x", size=10, line_color=MARK_COLOR, line_width=2)
+        self._peak = ColumnDataSource({"x": [], "y": []})
+        self.figure.scatter("x", "y", source=self._peak, marker="x", size=10, line_color=MARK_COLOR, line_width=2)
         bar = ColorBar(color_mapper=self._mapper, ticker=BasicTicker(desired_num_ticks=6), width=12, padding=4)
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
@@ -100,36 +100,36 @@ class ImageFigure:
         """Draw an image, or none, with colours up to a limit and the vertical axis between two values."""
         self.figure.title.text = title
         if image is None:
-            for source in (self._source, self._largest):
+            for source in (self._source, self._peak):
                 source.data = {name: [] for name in source.data}
             return
         (start, stop), (low, high) = image.horizontal, image.vertical
         self._source.data = {"image": [image.values], "x": [start], "y": [low], "w": [stop - start], "h": [high - low]}
-        self._largest.data = {"x": [image.largest[1]], "y": [image.largest[2]]}
+        self._peak.data = {"x": [image.largest[1]], "y": [image.largest[2]]}
         self._mapper.update(high=max(limit, 1e-12))
         self.figure.x_range.update(start=start, end=stop)
         self.figure.y_range.update(start=vertical[image.has_depth], end=vertical[not image.has_depth])
-        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.axis_labels
 
 
 class StudyFigure:
     """One number for all cases over one swept parameter, with marks at the page's cases."""
 
     def __init__(self) -> None:
-        self.figure = _new_figure()
+        self.figure = _create_figure()
         self._line = ColumnDataSource({"x": [], "v": [], "fill": [], "low": [], "high": []})
         self._unbounded = ColumnDataSource({"x": [], "v": []})
-        self._marked, self._marked_unbounded = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
+        self._case_marks, self._case_triangles = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
         self.figure.line("x", "v", source=self._line, color=NEUTRAL_COLOR, line_width=1.5)
         bars = {"base": "x", "lower": "low", "upper": "high", "source": self._line, "line_color": NEUTRAL_COLOR}
         self.figure.add_layout(Whisker(**bars, level="underlay"))
         self.figure.scatter("x", "v", source=self._line, line_color=NEUTRAL_COLOR, fill_color="fill", size=6)
         self.figure.scatter("x", "v", source=self._unbounded, line_color=NEUTRAL_COLOR, **TRIANGLE)
-        self.figure.scatter("x", "v", source=self._marked, color="color", size=11)
+        self.figure.scatter("x", "v", source=self._case_marks, color="color", size=11)
         triangle = TRIANGLE | {"line_width": 3}
-        self.figure.scatter("x", "v", source=self._marked_unbounded, line_color="color", **triangle)
+        self.figure.scatter("x", "v", source=self._case_triangles, line_color="color", **triangle)
         self.figure.y_range = Range1d(0, 1)
-        self._ticker = self.figure.xaxis[0].ticker  # for numbers
+        self._ticker = self.figure.xaxis[0].ticker  # of numeric axes
 
     def show(
         self,
@@ -148,25 +148,25 @@ class StudyFigure:
         bar_values = [*finite_values, *(values + bars)[is_finite], *(values - bars)[is_finite & (bars > 0)]]
         low, high = min([0.0, *bar_values]), max([*bar_values, 1e-12]) if finite_values else 1.0
         high += 0.06 * (high - low)
-        without_error = is_finite & np.isnan(errors)
-        with_bar = is_finite & (bars > 0)
+        lacks_error = is_finite & np.isnan(errors)
+        has_bar = is_finite & (bars > 0)
         self._line.data = {
             "x": x,
             "v": np.where(is_finite, values, np.nan),
-            "fill": np.where(without_error, "white", NEUTRAL_COLOR),
-            "low": np.where(with_bar, values - bars, np.nan),
-            "high": np.where(with_bar, values + bars, np.nan),
+            "fill": np.where(lacks_error, "white", NEUTRAL_COLOR),
+            "low": np.where(has_bar, values - bars, np.nan),
+            "high": np.where(has_bar, values + bars, np.nan),
         }
-        legend = ["bars: estimated errors"] * bool(with_bar.any())
-        legend += ["open marks: error not estimated"] * bool(without_error.any())
+        legend = ["bars: estimated errors"] * bool(has_bar.any())
+        legend += ["open marks: error not estimated"] * bool(lacks_error.any())
         self.figure.title.text = "; ".join(legend)
         mark_height = 0.96 * high
         self._unbounded.data = {"x": x[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), mark_height)}
-        for source, unbounded in ((self._marked, False), (self._marked_unbounded, True)):
-            cases = [case for case in marked_cases if np.isposinf(case[1]) == unbounded]
+        for source, is_unbounded in ((self._case_marks, False), (self._case_triangles, True)):
+            cases = [case for case in marked_cases if np.isposinf(case[1]) == is_unbounded]
             source.data = {
                 "x": [x[index] for index, _, _ in cases],
-                "v": [mark_height if unbounded else value for _, value, _ in cases],
+                "v": [mark_height if is_unbounded else value for _, value, _ in cases],
                 "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)

@@ -34,7 +34,7 @@ from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
 from contactstudy.report.tables import Quantity, Summary, summary
 
-NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
+NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the page's two case slots
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
 MEASURES = {  # Stress measures of the plane
     "von Mises stress": "von_mises",
@@ -56,7 +56,7 @@ class Page:
 
     def __init__(self, cases: Cases) -> None:
         self.cases = cases
-        self._columns: dict[tuple[int, ...], dict[str, str]] = {}
+        self._descriptions: dict[tuple[int, ...], dict[str, str]] = {}
         # Widgets and figures of the second case are created on demand: the page opens sooner.
         self.choices: list[dict[str, Any]] = [self._create_choices(""), {}]
         self._second_choices = pn.Column(visible=False, sizing_mode="stretch_width")
@@ -73,7 +73,7 @@ class Page:
         self.number = pn.widgets.Select(
             label="number of all cases", groups=groups, value=first_name, visible=bool(cases.dims)
         )
-        dims = {_label(cases.scalars[dim]): dim for dim in cases.dims}
+        dims = {_label_parameter(cases.scalars[dim]): dim for dim in cases.dims}
         self.parameter = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
@@ -86,7 +86,7 @@ class Page:
             widget.param.watch(self._on_widget_change, "value")
         self.update()
 
-    def _create_second(self) -> None:
+    def _create_second_case(self) -> None:
         """Create widgets and figures of the second case."""
         self.choices[1] = self._create_choices("second case: ")
         self._second_choices.objects = list(self.choices[1].values())
@@ -96,13 +96,13 @@ class Page:
 
     def _create_choices(self, prefix: str) -> dict[str, Any]:
         """Return a slider or a list for every swept parameter."""
-        start, widgets = self.cases.first_solved(), dict[str, Any]()
+        start, widgets = self.cases.start_values(), dict[str, Any]()
         for dim in self.cases.dims:
-            entry = self.cases.scalars[dim]
+            values = self.cases.scalars[dim]
             options = {text: index for index, text in enumerate(self.cases.choices(dim))}
-            names = entry.dtype.kind in "UOb" or len(options) > MAX_SLIDER_OPTIONS
-            widget_class = pn.widgets.Select if names else pn.widgets.DiscreteSlider
-            widgets[dim] = widget_class(label=f"{prefix}{_label(entry)}", options=options, value=start[dim])
+            needs_list = values.dtype.kind in "UOb" or len(options) > MAX_SLIDER_OPTIONS
+            widget_class = pn.widgets.Select if needs_list else pn.widgets.DiscreteSlider
+            widgets[dim] = widget_class(label=f"{prefix}{_label_parameter(values)}", options=options, value=start[dim])
             widgets[dim].param.watch(self._on_widget_change, "value")
         return widgets
 
@@ -113,56 +113,56 @@ class Page:
         if not (pn.state.curdoc and pn.state.curdoc.session_context):
             pn.io.push_notebook(*self.panes)
 
-    def index(self, side: int) -> tuple[int, ...]:
-        """Index of the first (0) or second (1) case in the study."""
-        return tuple(widget.value for widget in self.choices[side].values())
+    def index(self, slot: int) -> tuple[int, ...]:
+        """Index in the study of the case in a slot of the page, 0 or 1."""
+        return tuple(widget.value for widget in self.choices[slot].values())
 
     def update(self) -> None:
         """Draw the chosen cases."""
         if self.compare.value and not self.choices[1]:
-            self._create_second()
-        sides = [0, 1] if self.compare.value else [0]
-        cases = [self._load(side) if side in sides else None for side in (0, 1)]
+            self._create_second_case()
+        slots = [0, 1] if self.compare.value else [0]
+        cases = [self._load(slot) if slot in slots else None for slot in (0, 1)]
         self._second_choices.visible = bool(self.compare.value)
         has_stress = any(case is not None and case.has_stress for case in cases)
         self.plane.visible = self.measure.visible = has_stress
         self.fraction.visible = has_stress and self.plane.value != PLANES[0]
-        shown = {side: case for side, case in enumerate(cases) if case is not None and case.has_pressure}
-        planes = self._show_fields(shown)
-        self._show_study(sides)
-        self._set_visible(0, bool(shown))
-        for side in (0, 1):
-            self._set_visible(1 + side, side in shown)
-            self._set_visible(3 + side, side in planes)
-        remarks = [self._remark(side, cases[side], has_plane=side in planes) for side in sides]
+        drawn_cases = {slot: case for slot, case in enumerate(cases) if case is not None and case.has_pressure}
+        planes = self._show_fields(drawn_cases)
+        self._show_study(slots)
+        self._set_visible(0, bool(drawn_cases))
+        for slot in (0, 1):
+            self._set_visible(1 + slot, slot in drawn_cases)
+            self._set_visible(3 + slot, slot in planes)
+        remarks = [self._explain_missing(slot, cases[slot], has_plane=slot in planes) for slot in slots]
         if self.cases.dims and not self.panes[5].visible:
             remarks.append("No case at these values of the other parameters has this number.")
-        self._show_table(cases, sides, "".join(f"<p class=why>{remark}</p>" for remark in remarks if remark))
+        self._show_table(cases, slots, "".join(f"<p class=why>{remark}</p>" for remark in remarks if remark))
 
-    def _load(self, side: int) -> CaseFields | None:
-        """Return a chosen case; None if it is not solved."""
+    def _load(self, slot: int) -> CaseFields | None:
+        """Return the case of a slot; None if the case is not solved."""
         try:
-            return self.cases.load(self.index(side))
+            return self.cases.load(self.index(slot))
         except ContactStudyError:
             return None
 
-    def _show_table(self, cases: list[CaseFields | None], sides: list[int], remarks: str) -> None:
+    def _show_table(self, cases: list[CaseFields | None], slots: list[int], remarks: str) -> None:
         """Show the numbers of the cases side by side, and remarks on missing figures."""
-        columns = [self._column(cases[side], side) for side in sides]
+        columns = [self._describe_case(cases[slot], slot) for slot in slots]
         names = list(dict.fromkeys(name for column in columns for name in column))
-        head = "".join(f"<th style='color:{COLORS[side]}'>{NAMES[side]}</th>" for side in sides)
+        header = "".join(f"<th style='color:{COLORS[slot]}'>{NAMES[slot]}</th>" for slot in slots)
         body = ""
         for name in names:
             cells = "".join(f"<td class=n>{column.get(name, '')}</td>" for column in columns)
             body += f"<tr><td>{html.escape(name)}</td>{cells}</tr>"
-        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>{remarks}"
+        self.table.object = f"<table><tr><th></th>{header}</tr>{body}</table>{remarks}"
 
-    def _column(self, case: CaseFields | None, side: int) -> dict[str, str]:
+    def _describe_case(self, case: CaseFields | None, slot: int) -> dict[str, str]:
         """Numbers of a case by meaning."""
-        index = self.index(side)
+        index = self.index(slot)
         if case is None:
             return {"state": html.escape(self.cases.status(index)[0])}
-        if index not in self._columns:
+        if index not in self._descriptions:
             table = summary(case.dataset)
             assessment = assess_case(case.dataset, table)
             style = {"yes": "yes", "no": "no"}.get(assessment.overall, "care")
@@ -170,44 +170,44 @@ class Page:
             if assessment.overall != "yes":
                 reason = html.escape(assessment.verdict)
                 verdict += f"<div class=soft style='white-space:normal;font-weight:400'>{reason}</div>"
-            numbers = {row.meaning: html.escape(_marked_text(row)) for row in table.numbers}
-            self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
-        return self._columns[index]
+            numbers = {row.meaning: html.escape(_format_number(row)) for row in table.numbers}
+            self._descriptions[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
+        return self._descriptions[index]
 
-    def _show_fields(self, shown: dict[int, CaseFields]) -> dict[int, Image]:
+    def _show_fields(self, drawn_cases: dict[int, CaseFields]) -> dict[int, Image]:
         """Draw the fields of the cases with common axes and colours; return the images of the plane."""
         lines: dict[int, Line] = {}
         tops: dict[int, Image] = {}
         planes: dict[int, Image] = {}
         unit = ""
-        for side, case in shown.items():
+        for slot, case in drawn_cases.items():
             scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
             unit = scale.over_stress
-            lines[side], tops[side] = axial_line(case, scale, limits), top_image(case, scale, limits)
+            lines[slot], tops[slot] = axial_line(case, scale, limits), top_image(case, scale, limits)
             kind, fraction = self.plane.value, self.fraction.value
             if image := plane_image(case, scale, limits, kind, fraction, name=self.measure.value):
-                planes[side] = image
+                planes[slot] = image
         self.axial.show(lines)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
         rows = (tops, self.surface_figures, "pressure"), (planes, self.plane_figures, measure)
         for images, figures, quantity in rows:
-            limit = max((image.limit for image in images.values()), default=1.0)
+            color_limit = max((image.color_limit for image in images.values()), default=1.0)
             low = min((image.vertical[0] for image in images.values()), default=0.0)
             high = max((image.vertical[1] for image in images.values()), default=1.0)
-            for side, figure in enumerate(figures):
+            for slot, figure in enumerate(figures):
                 # The title has two lines, so that it fits into a narrow window.
-                title = f"{NAMES[side]}: {quantity}{unit}" if self.compare.value else f"{quantity}{unit}"
-                if side in images:
-                    clipped_note = "clipped at the end" if shown[side].singular_ends else ""
-                    notes = (images[side].position, f"largest {images[side].largest[0]:.4g}", clipped_note)
+                title = f"{NAMES[slot]}: {quantity}{unit}" if self.compare.value else f"{quantity}{unit}"
+                if slot in images:
+                    clipped_note = "clipped at the end" if drawn_cases[slot].singular_ends else ""
+                    notes = (images[slot].position, f"largest {images[slot].largest[0]:.4g}", clipped_note)
                     title += "\n" + ", ".join(filter(None, notes))
-                figure.show(images.get(side), limit, title, (low, high))
+                figure.show(images.get(slot), color_limit, title, (low, high))
         return planes
 
-    def _remark(self, side: int, case: CaseFields | None, *, has_plane: bool) -> str:
-        """Reason of missing figures of a case; empty if all are shown."""
+    def _explain_missing(self, slot: int, case: CaseFields | None, *, has_plane: bool) -> str:
+        """Reason of missing figures of a case; empty without missing figures."""
         if case is None:
-            text = status_sentence(*self.cases.status(self.index(side)))
+            text = status_sentence(*self.cases.status(self.index(slot)))
         elif not case.has_pressure:
             text = "The study stores no surfaces of this case, only its numbers."
         elif not has_plane:
@@ -215,7 +215,7 @@ class Page:
             text = f"The stresses {reason}."
         else:
             return ""
-        name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
+        name = f"<b>{NAMES[slot]}:</b> " if self.compare.value else ""
         return f"{name}{html.escape(text)}"
 
     def _set_visible(self, index: int, visible: bool) -> None:
@@ -225,7 +225,7 @@ class Page:
             pane.object.visible = visible
         pane.visible = visible
 
-    def _show_study(self, sides: list[int]) -> None:
+    def _show_study(self, slots: list[int]) -> None:
         """Draw one number of all cases over a swept parameter, with the first case's values of other parameters."""
         if not self.cases.dims or not self.number.value:
             self._set_visible(5, False)
@@ -240,23 +240,23 @@ class Page:
         values = np.asarray(numbers[line_index], dtype=np.float64) / factor
         x, label, ticks = self._parameter_axis(parameter)
         axis = dims.index(parameter)
-        marked = [(self.index(side)[axis], float(numbers[self.index(side)]) / factor, COLORS[side]) for side in sides]
+        marks = [(self.index(slot)[axis], float(numbers[self.index(slot)]) / factor, COLORS[slot]) for slot in slots]
         number_label = f"{specification.long_name} ({unit})" if unit else specification.long_name
         self._set_visible(5, not np.isnan(values).all())
-        errors = self._errors(name, line_index, values, factor)
-        self.study.show(x, values, errors, marked_cases=marked, labels=(label, number_label), ticks=ticks)
+        errors = self._select_errors(name, line_index, values, factor)
+        self.study.show(x, values, errors, marked_cases=marks, labels=(label, number_label), ticks=ticks)
 
     def _parameter_axis(self, parameter: str) -> tuple[FloatArray, str, dict[float, str] | None]:
         """Positions, label and ticks of a swept parameter."""
-        entry = self.cases.scalars[parameter]
-        if entry.dtype.kind not in "fi":
+        coordinate = self.cases.scalars[parameter]
+        if coordinate.dtype.kind not in "fi":
             ticks = {float(index): text for index, text in enumerate(self.cases.choices(parameter))}
-            return np.arange(entry.size, dtype=np.float64), _label(entry), ticks
-        factor, unit = unit_for(float(np.nanmax(np.abs(entry.values))), str(entry.attrs.get("units", "1")))
-        label = f"{_label(entry)} ({unit})" if unit else _label(entry)
-        return np.asarray(entry.values, dtype=np.float64) / factor, label, None
+            return np.arange(coordinate.size, dtype=np.float64), _label_parameter(coordinate), ticks
+        factor, unit = unit_for(float(np.nanmax(np.abs(coordinate.values))), str(coordinate.attrs.get("units", "1")))
+        label = f"{_label_parameter(coordinate)} ({unit})" if unit else _label_parameter(coordinate)
+        return np.asarray(coordinate.values, dtype=np.float64) / factor, label, None
 
-    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray:
+    def _select_errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray:
         """Errors of a number along a line of cases, NaN if not estimated; 0 for exact numbers."""
         scalars = self.cases.scalars
         if f"{name}_error" in scalars:
@@ -267,7 +267,7 @@ class Page:
     def view(self) -> Any:
         """Layout of the page: columns on a wide screen, rows on a narrow screen."""
         count = int((self.cases.scalars["status"] != "excluded").sum())
-        head = pn.pane.HTML(
+        header = pn.pane.HTML(
             f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"
             f"<div class=soft>{count} case{'s' if count != 1 else ''}</div>",
             stylesheets=[STYLE],
@@ -286,13 +286,13 @@ class Page:
             sizing_mode="stretch_width",
         )
         wide_style = {"flex": "1 1 25rem", "min-width": "min(100%, 19rem)"}
-        boxes = [pn.Column(self.table, styles=wide_style, sizing_mode="stretch_width")]
+        panels = [pn.Column(self.table, styles=wide_style, sizing_mode="stretch_width")]
         for pane in self.panes:
             pane.styles = wide_style
-            boxes.append(pane)
-        body = pn.FlexBox(*boxes, styles={"flex": "4 1 30rem", "gap": "0.6rem"}, sizing_mode="stretch_width")
+            panels.append(pane)
+        body = pn.FlexBox(*panels, styles={"flex": "4 1 30rem", "gap": "0.6rem"}, sizing_mode="stretch_width")
         return pn.Column(
-            head,
+            header,
             pn.FlexBox(controls, body, flex_wrap="wrap", styles={"gap": "1rem"}, sizing_mode="stretch_width"),
             sizing_mode="stretch_width",
         )
@@ -312,17 +312,17 @@ def _edge_factors(case: xr.Dataset, table: Summary) -> dict[str, str]:
     return texts
 
 
-def _label(entry: xr.DataArray) -> str:
+def _label_parameter(coordinate: xr.DataArray) -> str:
     """Label of a swept parameter."""
-    return str(entry.attrs.get("long_name", entry.name))
+    return str(coordinate.attrs.get("long_name", coordinate.name))
 
 
-def _marked_text(row: Quantity) -> str:
+def _format_number(quantity: Quantity) -> str:
     """Text of a number with the mark of its remark."""
     texts = {
         "singular": "singular: no largest value",
-        **dict.fromkeys(("open", "law"), f"{row.text}: {row.remark}"),
-        "rounding": f"{row.text} ({row.remark})",
-        NOT_ESTIMATED: f"{row.text} ({UNKNOWN_ERROR})",
+        **dict.fromkeys(("open", "law"), f"{quantity.text}: {quantity.remark}"),
+        "rounding": f"{quantity.text} ({quantity.remark})",
+        NOT_ESTIMATED: f"{quantity.text} ({UNKNOWN_ERROR})",
     }
-    return texts.get(row.mark, row.text)
+    return texts.get(quantity.mark, quantity.text)

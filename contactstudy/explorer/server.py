@@ -90,7 +90,7 @@ def restrict_access(application: Any, port: int, hosts: Sequence[str]) -> str:
     token, cookie, find_handler = secrets.token_urlsafe(24), f"contactstudy-{port}", application.find_handler
     allowed_hosts = LOCAL_HOSTS | {host.lower() for host in hosts}
 
-    class SetCookie(RequestHandler):
+    class CookieHandler(RequestHandler):
         """Set the cookie and reload the page at the address without the token."""
 
         def get(self) -> None:
@@ -100,20 +100,20 @@ def restrict_access(application: Any, port: int, hosts: Sequence[str]) -> str:
     def is_token(text: str) -> bool:
         return hmac.compare_digest(text.encode(), token.encode())
 
-    def find_allowed(request: Any, **arguments: Any) -> Any:
-        if _is_own_host(request, allowed_hosts):
+    def find_allowed_handler(request: Any, **arguments: Any) -> Any:
+        if _has_allowed_host(request, allowed_hosts):
             texts = [text.decode(errors="replace") for text in request.query_arguments.get("token", [])]
             if request.path == "/" and any(map(is_token, texts)):
-                return application.get_handler_delegate(request, SetCookie)
+                return application.get_handler_delegate(request, CookieHandler)
             if cookie in request.cookies and is_token(request.cookies[cookie].value):
                 return find_handler(request, **arguments)
         return application.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
 
-    application.find_handler = find_allowed
+    application.find_handler = find_allowed_handler
     return f"http://{HOST}:{port}/?token={token}"
 
 
-def _is_own_host(request: Any, hosts: Set[str]) -> bool:
+def _has_allowed_host(request: Any, hosts: Set[str]) -> bool:
     """Whether the host of a request is among `hosts`, and the request's origin, if any, is the same host."""
     origin = request.headers.get("Origin")
     try:

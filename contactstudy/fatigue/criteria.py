@@ -90,7 +90,7 @@ class FatigueLimits:
 
     @property
     def findley_slope(self) -> float:
-        """``k`` by which bending and torsion are at the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
+        """``k`` with which bending and torsion are at the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
         ratio = 2 * self.ratio - 1
         return float(ratio / np.sqrt(1 - ratio**2))
 
@@ -102,7 +102,7 @@ class FatigueLimits:
 
 # Ilyushin's axes (axis, component): the squared length of a deviator's five coordinates is s:s
 DEVIATOR_AXES = block_diag(helmert(3), np.sqrt(2.0) * np.eye(3))
-TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # Indices of the six components in the tensor
+TENSOR_INDICES = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # Indices of the six components in the tensor
 PLANE_TERMS = ("damage", "shear", "normal", *AXES)  # terms of Findley's sum, and components of the plane's normal
 
 
@@ -122,8 +122,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, see :func:`window_remainder`; residual
-        stresses may be added.
+        The six components along y over the whole passage, see :func:`window_remainder`; residual stresses may be added.
     limits : FatigueLimits
         Limits of the material.
 
@@ -153,10 +152,10 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
     tensor, rolling_dim = stack_history(stress)
 
-    def criterion(history: Array) -> dict[str, Array]:
+    def evaluate(history: Array) -> dict[str, Array]:
         centre, _ = enclosing_balls(history @ DEVIATOR_AXES.T)
         residual = centre @ np.linalg.pinv(DEVIATOR_AXES).T
-        principal = np.linalg.eigvalsh((history - residual[:, None])[..., TENSOR])
+        principal = np.linalg.eigvalsh((history - residual[:, None])[..., TENSOR_INDICES])
         shear, hydrostatic = 0.5 * (principal[..., 2] - principal[..., 0]), history[..., :3].mean(axis=-1)
         damage = shear + limits.dang_van_slope * hydrostatic
         instant_index = damage.argmax(axis=1)[:, None]
@@ -164,11 +163,11 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         terms = {name: np.take_along_axis(value, instant_index, axis=1)[:, 0] for name, value in values.items()}
         return terms | {"instant": instant_index[:, 0].astype(np.float64)}
 
-    terms = map_histories(criterion, stress, ("damage", "shear", "hydrostatic", "instant"))
+    terms = map_histories(evaluate, stress, ("damage", "shear", "hydrostatic", "instant"))
     instant = terms.pop("instant").compute()
-    loaded = instant < tensor.sizes[rolling_dim]
-    index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
-    y = positions(tensor, "y").isel({rolling_dim: index}).where(loaded)
+    is_loaded = instant < tensor.sizes[rolling_dim]
+    index = instant.where(is_loaded, 0).astype(np.int64).reset_coords(drop=True)
+    y = positions(tensor, "y").isel({rolling_dim: index}).where(is_loaded)
     return _label_criterion("dang_van", terms.pop("damage"), limits.torsion, **terms, y=y)
 
 
@@ -210,11 +209,11 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
     slope = limits.crossland_slope
 
-    def criterion(history: Array) -> dict[str, Array]:
+    def evaluate(history: Array) -> dict[str, Array]:
         _, radius = enclosing_balls(history @ DEVIATOR_AXES.T)
         return {"shear": radius / np.sqrt(2.0), "hydrostatic": history[..., :3].mean(axis=-1).max(axis=1)}
 
-    terms = map_histories(criterion, stress, ("shear", "hydrostatic"))
+    terms = map_histories(evaluate, stress, ("shear", "hydrostatic"))
     return _label_criterion("crossland", terms["shear"] + slope * terms["hydrostatic"], limits.torsion, **terms)
 
 
@@ -228,9 +227,9 @@ MAX_ROTATION, MIN_ROTATION = np.radians(8.0), np.radians(1e-3)
 @cache
 def _create_frames() -> Array:
     """Frames (frame, 2, 3): a normal and a shear direction in its plane."""
-    index = np.arange(NORMALS) + 0.5
-    height = 1 - index / NORMALS
-    azimuth = np.pi * (1 + np.sqrt(5)) * index
+    number = np.arange(NORMALS) + 0.5
+    height = 1 - number / NORMALS
+    azimuth = np.pi * (1 + np.sqrt(5)) * number
     radius = np.sqrt(1 - height**2)
     normal = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
     first_axis = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
@@ -248,11 +247,11 @@ def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
     normal, direction = frames[..., 0, :], frames[..., 1, :]
     # The components of a tensor product count once on the diagonal, and twice beside it.
     products = (normal[..., None] * vector[..., None, :] for vector in (direction, normal))
-    shear, squared = (
+    shear, normal_product = (
         (product + product.swapaxes(-1, -2))[..., [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] for product in products
     )
     counts = np.array([0.5, 0.5, 0.5, 1.0, 1.0, 1.0])
-    return counts * shear, counts * squared
+    return counts * shear, counts * normal_product
 
 
 def _compute_damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
@@ -275,37 +274,37 @@ def _rotate_frames(frames: Array, angle: Array) -> Array:
     return np.asarray(np.einsum("fkij,fnj->fkni", rotations, frames))
 
 
-def _worst_planes(history: Array, slope: float) -> dict[str, Array]:
+def _find_worst_planes(history: Array, slope: float) -> dict[str, Array]:
     """Sum, shear amplitude, largest normal stress and components of the normal, on the worst plane of each history."""
     search_frames = _create_frames()
     shear_vectors, normal_vectors = _resolution_vectors(search_frames)
     best_frames = np.empty((len(history), FRAMES, 2, 3))
-    block = max(1, 2**24 // (history.shape[1] * len(search_frames)))  # Bound on the memory of the first search
-    for start in range(0, len(history), block):
-        block_history = history[start : start + block]
+    block_size = max(1, 2**24 // (history.shape[1] * len(search_frames)))  # Bound on the memory of the first search
+    for start in range(0, len(history), block_size):
+        block_history = history[start : start + block_size]
         shear = block_history @ shear_vectors.T
         max_normal = np.repeat((block_history @ normal_vectors[::DIRECTIONS].T).max(axis=1), DIRECTIONS, axis=1)
         damage = 0.5 * (shear.max(axis=1) - shear.min(axis=1)) + slope * max_normal
-        best_frames[start : start + block] = search_frames[np.argpartition(damage, -FRAMES, axis=1)[:, -FRAMES:]]
+        best_frames[start : start + block_size] = search_frames[np.argpartition(damage, -FRAMES, axis=1)[:, -FRAMES:]]
     frames = best_frames.reshape(-1, 2, 3)
-    point = np.repeat(np.arange(len(history)), FRAMES)
+    point_index = np.repeat(np.arange(len(history)), FRAMES)
     angle = np.full(len(frames), MAX_ROTATION)
     active = np.arange(len(frames))
     # The search ignores gains below rounding; otherwise equivalent planes prevent its end.
     min_gain = 1e-11 * np.abs(history).max(axis=(1, 2))  # Minimum gain of a rotation: rounding
     while active.size:
         candidates = _rotate_frames(frames[active], angle[active])
-        damage, _, _ = _compute_damage(history[point[active]], candidates, slope)
-        choice = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point[active]], damage.argmax(axis=1), 0)
+        damage, _, _ = _compute_damage(history[point_index[active]], candidates, slope)
+        choice = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point_index[active]], damage.argmax(axis=1), 0)
         frames[active] = candidates[np.arange(active.size), choice]
         angle[active[choice == 0]] *= 0.5
         active = active[angle[active] > MIN_ROTATION]
     refined_frames = frames.reshape(-1, FRAMES, 2, 3)
     damage_terms = _compute_damage(history, refined_frames, slope)
-    worst = damage_terms[0].argmax(axis=1)[:, None]
-    normal = np.take_along_axis(refined_frames[:, :, 0], worst[..., None], axis=1)[:, 0]
+    worst_index = damage_terms[0].argmax(axis=1)[:, None]
+    normal = np.take_along_axis(refined_frames[:, :, 0], worst_index[..., None], axis=1)[:, 0]
     normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
-    terms = [np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms]
+    terms = [np.take_along_axis(values, worst_index, axis=1)[:, 0] for values in damage_terms]
     return dict(zip(PLANE_TERMS, [*terms, *normal.T], strict=True))
 
 
@@ -314,7 +313,7 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     On a plane, ``tau_a`` is half of the largest range of the shear stress resolved in one direction during the history,
     and ``sigma_n,max`` the largest normal stress, positive in tension, at least zero by the unloaded state. The
-    search starts from planes of about 10 degrees, and rotates the worst planes until no rotation by 0.001
+    search starts from planes about 10 degrees apart, and rotates the worst planes until no rotation by 0.001
     degrees increases the sum. ``k`` and ``f`` follow from the limits.
 
     Parameters
@@ -345,7 +344,7 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     1.0
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    terms = map_histories(lambda history: _worst_planes(history, limits.findley_slope), stress, PLANE_TERMS)
+    terms = map_histories(lambda history: _find_worst_planes(history, limits.findley_slope), stress, PLANE_TERMS)
     normals = [terms.pop(axis) for axis in AXES]
     plane = xr.concat(normals, "axis", coords="minimal", compat="override").transpose(..., "axis")
     result = _label_criterion("findley", terms.pop("damage"), limits.findley_limit, **terms, plane=plane)

@@ -72,8 +72,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     Parameters
     ----------
     risk, reference : Dataset
-        Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit; for example the
-        body with free ends and the half-space.
+        Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit.
     exponents : LifeExponents
         Exponents of both risks.
 
@@ -142,8 +141,8 @@ def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
         curvature = (slope_after - slope_before) / (z3 - z1)
         position = 0.5 * (z1 + z2) - slope_before / (2 * curvature)
         maximum = s2 + (position - z2) * (slope_before + curvature * (position - z1))
-    inside = np.isfinite(maximum) & (curvature < 0)
-    maximum, position = np.where(np.isfinite(s2), np.where(inside, (maximum, position), (s2, z2)), np.nan)
+    is_inside = np.isfinite(maximum) & (curvature < 0)
+    maximum, position = np.where(np.isfinite(s2), np.where(is_inside, (maximum, position), (s2, z2)), np.nan)
     return maximum, position
 
 
@@ -159,16 +158,16 @@ def _integrate_risk(
     density: xr.DataArray,
     exponents: LifeExponents,
     theory: Mapping[str, str | float],
-    truncated: dict[str, xr.DataArray],
+    truncated_sections: dict[str, xr.DataArray],
 ) -> xr.Dataset:
-    """Risk along x, and its integral over x; `truncated` maps a reason to the sections whose stress is truncated."""
+    """Risk along x, and its integral over x; `truncated_sections` maps reasons to masks of the sections."""
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
     if (positions(density, "x").diff(x) <= 0).any():
         raise InvalidInputError("x", positions(density, "x").values, "increasing positions")
     risk = _sum_over_x(density)
-    for name, mask in truncated.items():
+    for name, mask in truncated_sections.items():
         fraction = _sum_over_x(density.where(mask, 0.0)) / risk.where(risk > 0)
         if (fraction > MAX_TRUNCATED_RISK).any():
             value = f"{name} in sections with {float(fraction.max()):.2g} of the risk"
@@ -210,8 +209,8 @@ def _estimate_error(
 def _assign_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
     """Return a result with the error of its risk; zero for a risk of zero."""
     risk = result["risk"]
-    total = name_array("risk_error", error.where(risk != 0, 0.0))
-    return result.assign(risk_error=total.assign_attrs(units=risk.attrs["units"], comment=comment))
+    risk_error = name_array("risk_error", error.where(risk != 0, 0.0))
+    return result.assign(risk_error=risk_error.assign_attrs(units=risk.attrs["units"], comment=comment))
 
 
 def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEARINGS) -> xr.Dataset:
@@ -262,12 +261,12 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     inner_shear = shear.where((y > y.min(rolling_dim)) & (y < y.max(rolling_dim)))
     inner_amplitude = 0.5 * (inner_shear.max(rolling_dim) - inner_shear.min(rolling_dim))
     at_border = ((amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)).any(dim)
-    truncated = {
+    truncated_sections = {
         "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
         "orthogonal shear largest at the first or last y": at_border,
     }
     density = _shear_risk(max_amplitude, depth, exponents)
-    result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated).assign(
+    result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated_sections).assign(
         shear_amplitude=label_points("shear_amplitude", max_amplitude), shear_depth=label_points("shear_depth", depth)
     )
 
@@ -280,8 +279,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
         comment = "from the distance of the positions, and of the pressure"
         peak = stress["peak_pressure"]
         # At a singular end the stress is unbounded.
-        relative = (stress["peak_pressure_error"] / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
-        error = error + (result["risk"] * (exponents.stress * relative)).reset_coords(drop=True)
+        ratio = (stress["peak_pressure_error"] / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
+        error = error + (result["risk"] * (exponents.stress * ratio)).reset_coords(drop=True)
     return _assign_error(result, error, comment)
 
 
@@ -298,10 +297,10 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
     return (peak**exponents.stress * depth.where(depth > 0) ** (1 - exponents.depth)).where(peak != 0, 0.0)
 
 
-def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
-    """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
-    last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
-    indices = np.concatenate([np.zeros_like(last), last - 1, last], axis=-1)
+def _truncated_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
+    """Fraction of a section's risk above the first depth (uniform excess) and below the last depth (exponential)."""
+    last_index = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
+    indices = np.concatenate([np.zeros_like(last_index), last_index - 1, last_index], axis=-1)
     first_excess, previous_excess, last_excess = np.moveaxis(np.take_along_axis(excess, indices, axis=-1), -1, 0)
     first_depth, previous_depth, last_depth = np.moveaxis(np.take_along_axis(depth, indices, axis=-1), -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -324,20 +323,19 @@ def ioannides_harris(
     ----------
     stress : DataArray
         A measure of the passage along x and z, Pa, at three or more depths and two or more x: for example
-        ``analysis.measure(result, "orthogonal_shear_amplitude")``, ``dang_van(...).dang_van``, or the largest von Mises
-        stress along y.
+        ``analysis.measure(result, "orthogonal_shear_amplitude")``, or ``dang_van(...).dang_van``.
     limit : float
-        Limit ``sigma_u`` of the same measure without failure below, Pa.
+        Limit ``sigma_u`` of the same measure, below which no point fails, Pa.
     exponents : LifeExponents
         Exponents; default: of roller bearings.
 
     Returns
     -------
     Dataset
-        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean` (m) ``z'`` along x,
-        NaN in sections below the limit. The error counts the positions along x and z, and the parts above the first
-        and below the last depth; it neglects the positions along y of the measure, and the pressure. Halve the distance
-        along y to find its effect: the risk grows with the stress to the power of some 10.
+        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean_depth` (m) ``z'`` along x,
+        NaN in sections below the limit. The error covers the distance of the positions along x and z, and the risk
+        above the first and below the last depth, not the distance along y and the error of the pressure. The risk
+        grows with about the 10th power of the stress: halve the distance along y to find its effect.
 
     Raises
     ------
@@ -355,7 +353,7 @@ def ioannides_harris(
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    if stress.attrs.get("units") != "1":  # a utilisation has no unit
+    if stress.attrs.get("units") != "1":  # a utilisation is dimensionless
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
     if "y" in axis_dimensions(stress):
@@ -363,29 +361,30 @@ def ioannides_harris(
         raise InvalidInputError("stress.dims", stress.dims, "without the rolling direction", hint)
     stress = stress.compute()
     dim, depths = _depth_positions(stress)
-    outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
-    borders = {"a measure largest at the first or last depth": stress.where(outer).max(dim) >= stress.max(dim)}
+    is_outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
+    sections = {"a measure largest at the first or last depth": stress.where(is_outer).max(dim) >= stress.max(dim)}
 
     def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
         """Return density of the risk, weighted mean depth of the excess, and truncated fraction of the risk."""
         excess = np.clip(stress - threshold, 0.0, None) ** exponents.stress
         volume, depth_moment = _integrate(excess, depth), _integrate(excess * depth, depth)
         with np.errstate(divide="ignore", invalid="ignore"):
-            mean = depth_moment / volume
-            density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-        return density, mean, _cut_fraction(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
+            mean_depth = depth_moment / volume
+            density = np.where(volume > 0, volume / mean_depth**exponents.depth, volume)
+        fraction = _truncated_fraction(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
+        return density, mean_depth, fraction
 
     def compute_sections(field: xr.DataArray) -> tuple[xr.DataArray, ...]:
         dimension, depth_positions = _depth_positions(field)
         return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
-    density, mean, truncated = compute_sections(stress)
+    density, mean_depth, truncated_fraction = compute_sections(stress)
     theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
-    result = _integrate_risk(density, exponents, theory, borders)
+    result = _integrate_risk(density, exponents, theory, sections)
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
     error = _estimate_error(stress, result["risk"], lambda field: _sum_over_x(compute_sections(field)[0]))
-    error = error + _sum_over_x(density * truncated)
+    error = error + _sum_over_x(density * truncated_fraction)
     comment = "of the positions along x and z alone, without the error of the positions along y and of the pressure"
-    return _assign_error(result.assign(mean_depth=label_points("mean_depth", mean)), error, comment)
+    return _assign_error(result.assign(mean_depth=label_points("mean_depth", mean_depth)), error, comment)

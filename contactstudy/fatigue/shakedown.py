@@ -72,7 +72,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
 
     Examples
     --------
-    A residual tension of 1 halves a pure stress along rolling from 0 to -2.
+    A residual tension of 1 halves the least yield stress of a uniaxial stress between 0 and -2.
 
     >>> passage = xr.DataArray([-1.0, -2.0, -1.0], dims="y", coords={"y": [-1.0, 0.0, 1.0]})
     >>> result = shakedown(xr.Dataset({name: passage * (name == "sigma_yy") for name in STRESSES}))
@@ -149,8 +149,8 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     rolling_dim = dimension_along(case["tau_yz"], "y")
     # Each subset has every second instant: one of the two subsets lacks the critical instant.
     has_error = case.sizes[rolling_dim] >= MIN_POSITIONS_FOR_ERROR
-    samples = [case, *(case.isel({rolling_dim: slice(start, None, 2)}) for start in (0, 1) if has_error)]
-    fields = [shakedown(sample, axial=axial).compute() for sample in samples]
+    sampled_cases = [case, *(case.isel({rolling_dim: slice(start, None, 2)}) for start in (0, 1) if has_error)]
+    fields = [shakedown(sampled_case, axial=axial).compute() for sampled_case in sampled_cases]
     result = xr.Dataset()
     for variable in ("shakedown_stress", "first_yield_stress"):
 
@@ -158,15 +158,16 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             return shakedown(points, axial=axial)[variable]
 
         maximum, *half_maxima = (
-            interpolated_peak(sample, list(STRESSES), field[variable], interpolate)
-            for sample, field in zip(samples, fields, strict=True)
+            interpolated_peak(sampled_case, list(STRESSES), field[variable], interpolate)
+            for sampled_case, field in zip(sampled_cases, fields, strict=True)
         )
         if not has_error:
             maximum = maximum._replace(error=np.inf, comment="too few positions along y for an estimate")
         elif _is_border_critical(case, fields[0], variable):
             maximum = maximum._replace(error=np.inf, comment="the first or the last position along y decides")
         else:
-            maximum = maximum._replace(error=maximum.error + maximum.value - min(half.value for half in half_maxima))
+            min_value = min(half_maximum.value for half_maximum in half_maxima)
+            maximum = maximum._replace(error=maximum.error + maximum.value - min_value)
         peak = label_peak(variable, maximum, VARIABLES[variable])
         position_notes = ["on the top" if maximum.position.get("z", 1.0) == 0 else "below the top"]
         ends = cell_ends(case) if "x" in maximum.position else ()
@@ -219,16 +220,15 @@ def _is_border_critical(case: xr.Dataset, fields: xr.Dataset, variable: str) -> 
     yield_stresses = _min_yield_stress(point + residual)
     max_stress = float(fields[variable].isel(position))
     # A history that ends unloaded is complete.
-    unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL_TOLERANCE * max_stress
-    return bool(((yield_stresses[[0, -1]] >= max_stress * (1 - EQUAL_TOLERANCE)) & ~unloaded).any())
+    is_unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL_TOLERANCE * max_stress
+    return bool(((yield_stresses[[0, -1]] >= max_stress * (1 - EQUAL_TOLERANCE)) & ~is_unloaded).any())
 
 
 DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's polynomials: smooth stresses
-# Points per element along either axis. Accuracy: an element has two functions along each axis; with only two points the
-# body would yield between the points
+# Points per element along either axis. Accuracy: with two points, as many as functions, the body yields between them
 POINTS_PER_ELEMENT = 4
 MIN_POINTS = 5  # Minimum number of points along x and z: with fewer, the stress function has no free coefficients
-MAX_GAP = 1e-4  # Relative duality gap of convergence
+MAX_DUALITY_GAP = 1e-4  # Relative duality gap of convergence
 MAX_CONE_PROGRAMS = 20  # Bound on the programs; about six suffice
 SQRT3 = np.sqrt(3.0)
 
@@ -287,16 +287,16 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)
     scale = float(np.abs(history).max()) or 1.0
     stress_matrices = _stress_matrices(body.extent, x, z)
-    program = _Program(history / scale, stress_matrices)
-    airy, max_stress, bound = program.solve()
-    gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
-    if gap > MAX_GAP:
-        message = f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs"
+    program = _ConeProgram(history / scale, stress_matrices)
+    coefficients, max_stress, bound = program.solve()
+    duality_gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
+    if duality_gap > MAX_DUALITY_GAP:
+        message = f"the shakedown program has a gap of {duality_gap:.2g} after {MAX_CONE_PROGRAMS} programs"
         hint = "the bound holds, and a larger load may shake down; take fewer positions along x and z"
         warnings.warn(f"{message}: {hint}", ConvergenceWarning, stacklevel=2)
-    in_plane = [scale * (matrix @ airy) for matrix in stress_matrices]
-    centre, radius, _ = program.compute_balls(airy)
-    xx, zz, xz = in_plane
+    plane_stresses = [scale * (matrix @ coefficients) for matrix in stress_matrices]
+    centre, radius, _ = program.compute_balls(coefficients)
+    xx, zz, xz = plane_stresses
     results = {
         "first_yield_stress": _min_yield_stress(history).max(axis=1),
         "shakedown_stress": scale * radius / SQRT3,
@@ -311,7 +311,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
         {name: label_points(name, template.copy(data=field.reshape(template.shape))) for name, field in results.items()}
     )
     result["peak_shakedown_stress"] = label_points("peak_shakedown_stress", result["shakedown_stress"].max())
-    result["program_gap"] = name_array("program_gap", xr.DataArray(gap))
+    result["program_gap"] = name_array("program_gap", xr.DataArray(duality_gap))
     return result
 
 
@@ -332,46 +332,46 @@ def _stress_matrices(extent: tuple[float, float], x: FloatArray, z: FloatArray) 
 
 def _element_edges(points: FloatArray, low: float, high: float) -> FloatArray:
     """Edges from `low` to `high`, at every `POINTS_PER_ELEMENT`-th point."""
-    inner = points[(points > low) & (points < high)]
-    borders = inner[POINTS_PER_ELEMENT - 1 : 1 - POINTS_PER_ELEMENT or None : POINTS_PER_ELEMENT]
+    inner_points = points[(points > low) & (points < high)]
+    borders = inner_points[POINTS_PER_ELEMENT - 1 : 1 - POINTS_PER_ELEMENT or None : POINTS_PER_ELEMENT]
     return np.concatenate([[low], borders, [high]])
 
 
-class _Program:
+class _ConeProgram:
     """Cone program: histories in units of their largest stress, and residual stresses per coefficient."""
 
     def __init__(self, history: Array, stress_matrices: list[sparse.csr_array]) -> None:
         xx, zz, xz = stress_matrices
-        self._v, self._xz = sparse.csr_array(0.5 * SQRT3 * (xx - zz)), sparse.csr_array(SQRT3 * xz)
+        self._v_matrix, self._xz_matrix = sparse.csr_array(0.5 * SQRT3 * (xx - zz)), sparse.csr_array(SQRT3 * xz)
         self.u, self.v, _ = to_ball_axes(history)
         self.xz = SQRT3 * history[..., 4]
         self.fixed_shear = np.sqrt(3 * (history[..., 3] ** 2 + history[..., 5] ** 2))
 
-    def compute_balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
+    def compute_balls(self, coefficients: FloatArray) -> tuple[Array, Array, Array]:
         """Free stress along u, least von Mises stress of every point, and von Mises stress of every instant."""
-        v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
+        v, xz = self.v + (self._v_matrix @ coefficients)[:, None], self.xz + (self._xz_matrix @ coefficients)[:, None]
         squared = v**2 + xz**2 + self.fixed_shear**2
         centre, radius = enclosing_balls(self.u[..., None], np.sqrt(squared))
         return centre[:, 0], radius, np.sqrt((self.u - centre) ** 2 + squared)
 
     def solve(self) -> tuple[FloatArray, float, float]:
         """Coefficients, the largest von Mises stress with these coefficients, and the lower bound of this stress."""
-        best_airy, min_radius, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
-        airy = best_airy
+        best_coefficients, min_radius, bound = np.zeros(self._v_matrix.shape[1]), np.inf, 0.0
+        coefficients = best_coefficients
         # The unloaded state at every point bounds all coefficients.
         is_active = np.zeros(self.u.shape, dtype=bool)
         is_active[:, -1] = True
         for program_index in range(MAX_CONE_PROGRAMS + 1):
-            _, radius, stress = self.compute_balls(airy)
+            _, radius, stress = self.compute_balls(coefficients)
             if radius.max() < min_radius:
-                best_airy, min_radius = airy, float(radius.max())
-            if program_index == MAX_CONE_PROGRAMS or min_radius - bound <= MAX_GAP * min_radius:
+                best_coefficients, min_radius = coefficients, float(radius.max())
+            if program_index == MAX_CONE_PROGRAMS or min_radius - bound <= MAX_DUALITY_GAP * min_radius:
                 break
             # Add the instants that support the smallest ball at points above the program's bound.
             is_critical = radius > max(bound, 0.5 * radius.max())
-            is_active |= (stress >= radius[:, None] * (1 - 0.3 * MAX_GAP)) & is_critical[:, None]
-            airy, bound = self._minimise(is_active)
-        return best_airy, min_radius, bound
+            is_active |= (stress >= radius[:, None] * (1 - 0.3 * MAX_DUALITY_GAP)) & is_critical[:, None]
+            coefficients, bound = self._minimise(is_active)
+        return best_coefficients, min_radius, bound
 
     def _minimise(self, is_active: Array) -> tuple[FloatArray, float]:
         """Coefficients that minimise the largest stress of the active instants, and a lower bound of this stress."""
@@ -385,7 +385,7 @@ class _Program:
         # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, fixed shear per instant.
         t_row, u_row, v_row, xz_row, _ = (sparse.csr_array(-row[:, None]) for row in np.eye(5))
         is_point = sparse.csr_array((np.ones(cone_count), (np.arange(cone_count), point_index)))
-        airy_matrix = sparse.kron(self._v[point], v_row) + sparse.kron(self._xz[point], xz_row)
+        airy_matrix = sparse.kron(self._v_matrix[point], v_row) + sparse.kron(self._xz_matrix[point], xz_row)
         t_column = sparse.kron(np.ones((cone_count, 1)), t_row)
         matrix = sparse.csc_array(sparse.hstack([t_column, sparse.kron(is_point, u_row), airy_matrix]))
         constants = [values[point, instant] for values in (0 * self.u, self.u, self.v, self.xz, self.fixed_shear)]

@@ -1,8 +1,7 @@
 """Flash temperature of a solved contact: heat of friction, partition of the heat, and temperature of both surfaces.
 
 The steady temperature of a moving surface is the integral of eq. (601) over the length of spreading s. For uniform heat
-in a cell the integrand has one factor along each axis (docs/explanation/heat_and_wear.md); insulated ends mirror the
-cell along x.
+in a cell the integrand has one factor along each axis (docs/explanation/heat_and_wear.md); insulated ends mirror cells.
 """
 
 from __future__ import annotations
@@ -78,11 +77,10 @@ class ThermalProperties:
 MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
 
 
-def spread_nodes(min_width: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
+def spread_nodes(min_width: float, cell_width: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
-    # The integral ends when the heat of all cells has drifted beyond the window; for a source at rest, at 1e8
-    # windows, where the remainder is 1e-8.
+    # The integral ends when all heat has drifted beyond the window; at rest, at 1e8 windows, with a remainder of 1e-8.
     max_spread = 1e8 * window
     if speed:
         max_spread = min((MAX_SPREADS + np.sqrt(MAX_SPREADS**2 + 2 * speed * window)) / speed, max_spread)
@@ -92,7 +90,7 @@ def spread_nodes(min_width: float, step: float, window: float, drift: float) -> 
     edges = [np.zeros(1), np.geomspace(min_spread, max_spread, panel_count + 1)]
     if speed:
         # Lengths of spreading at which the edge of a drifting cell passes the midpoint of another cell.
-        crossings = np.sqrt(2 * step * (np.arange(int(np.ceil(window / step)) + 1) + 0.5) / speed)
+        crossings = np.sqrt(2 * cell_width * (np.arange(int(np.ceil(window / cell_width)) + 1) + 0.5) / speed)
         edges.append(crossings[crossings < max_spread])
     panel_edges = np.unique(np.concatenate(edges))
     panel_edges = panel_edges[np.concatenate([[True], np.diff(panel_edges) > 1e-9 * panel_edges[1:]])]
@@ -103,11 +101,11 @@ def spread_nodes(min_width: float, step: float, window: float, drift: float) -> 
     return (midpoints[:, None] + half_widths[:, None] * points).ravel(), (half_widths[:, None] * weights).ravel()
 
 
-def lateral_factors(spread: FloatArray, distance: FloatArray, step: float, drift: float) -> FloatArray:
+def lateral_factors(spread: FloatArray, distance: FloatArray, cell_width: float, drift: float) -> FloatArray:
     """Fraction of a cell's heat density that remains at distances along y from its midpoint: (spread, distance)."""
     s = spread[:, None]
-    drifted = distance[None, :] - 0.5 * drift * s**2
-    return np.asarray(0.5 * (erf((drifted + 0.5 * step) / s) - erf((drifted - 0.5 * step) / s)))
+    offset = distance[None, :] - 0.5 * drift * s**2
+    return np.asarray(0.5 * (erf((offset + 0.5 * cell_width) / s) - erf((offset - 0.5 * cell_width) / s)))
 
 
 def axial_factors(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
@@ -178,10 +176,10 @@ class SourceOperator:
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))
         lags = np.arange(self._size_y)
         lags[lags >= grid.cells_y] -= self._size_y
-        lateral = rfft(weights[:, None] * lateral_factors(spread, grid.dy * lags, grid.dy, body.drift), axis=-1)
+        spectra = rfft(weights[:, None] * lateral_factors(spread, grid.dy * lags, grid.dy, body.drift), axis=-1)
         if not grid.uniform:
             pairs = x.size * edges.size
-            self._spectra = {1: _sum_products(spread, lateral, pairs, lambda s: axial_factors(s, x, edges, body.ends))}
+            self._spectra = {1: _sum_products(spread, spectra, pairs, lambda s: axial_factors(s, x, edges, body.ends))}
             return
         self._size_x = next_fast_len(2 * x.size - 1, real=True)
         offsets = np.arange(self._size_x)
@@ -191,10 +189,10 @@ class SourceOperator:
             """Fractions at distances along x from the midpoint of a cell and of its images in both ends."""
             lower, upper = (distance + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
 
-            def factors(s: FloatArray) -> FloatArray:
+            def compute_factors(s: FloatArray) -> FloatArray:
                 return _primitive(s, upper, length) - _primitive(s, lower, length)
 
-            return np.asarray(fft(_sum_products(spread, lateral, lower.size, factors), axis=0))
+            return np.asarray(fft(_sum_products(spread, spectra, lower.size, compute_factors), axis=0))
 
         self._spectra = {1: compute_spectrum(0.0)}  # by the order of the cells along x
         if np.isfinite(body.ends[0]):
@@ -217,16 +215,16 @@ class SourceOperator:
 
 
 def _sum_products(
-    spread: FloatArray, lateral: ComplexArray, size: int, factors: Callable[[FloatArray], FloatArray]
+    spread: FloatArray, spectra: ComplexArray, size: int, compute_factors: Callable[[FloatArray], FloatArray]
 ) -> ComplexArray:
     """Sum, over the lengths of spreading, of axial factors (`size` numbers) times spectra of lateral factors."""
     # Products of real numbers cost half as much as products of complex numbers.
-    real_factors = np.ascontiguousarray(lateral).view(np.float64)
+    real_factors = np.ascontiguousarray(spectra).view(np.float64)
     sums: FloatArray = np.zeros(())
     step = max(1, 2**22 // size)  # Lengths of spreading in memory at a time
     for start in range(0, spread.size, step):
         chunk = slice(start, start + step)
-        sums = sums + np.tensordot(factors(spread[chunk]), real_factors[chunk], axes=(0, 0))
+        sums = sums + np.tensordot(compute_factors(spread[chunk]), real_factors[chunk], axes=(0, 0))
     return np.ascontiguousarray(sums).view(np.complex128)
 
 
@@ -270,29 +268,30 @@ Response = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
 
 
 def partition_heat(
-    first_response: Response, second_response: Response, heat: FloatArray, in_contact: BoolArray
+    body_response: Response, roller_response: Response, heat: FloatArray, in_contact: BoolArray
 ) -> tuple[FloatArray, float]:
-    """Heat into the first of two surfaces of equal contact temperature, and the difference of their relative rises."""
+    """Heat into the body with equal contact temperatures of both surfaces, and the temperatures' relative mismatch."""
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
 
-    first_rise, second_rise = first_response(heat)[in_contact], second_response(heat)[in_contact]
-    fraction = second_rise.max() / (first_rise.max() + second_rise.max())  # Blok's: equal largest temperatures
+    body_rise, roller_rise = body_response(heat)[in_contact], roller_response(heat)[in_contact]
+    fraction = roller_rise.max() / (body_rise.max() + roller_rise.max())  # Blok's: equal largest temperatures
     guess = fraction * heat[in_contact]
     count = guess.size
 
-    def apply(cell_heat: FloatArray) -> FloatArray:
+    def sum_rises(cell_heat: FloatArray) -> FloatArray:
         grid_heat = np.zeros(heat.shape)
         grid_heat[in_contact] = np.ravel(cell_heat)
-        return np.asarray((first_response(grid_heat) + second_response(grid_heat))[in_contact])
+        return np.asarray((body_response(grid_heat) + roller_response(grid_heat))[in_contact])
 
-    operator = LinearOperator((count, count), matvec=apply, dtype=np.float64)  # eq. (602)
+    operator = LinearOperator((count, count), matvec=sum_rises, dtype=np.float64)  # eq. (602)
     # Residual of the temperatures over the right-hand side at which the iteration stops
-    solution, _ = gmres(operator, second_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MAX_RESTARTS)
-    mismatch = float(np.abs(apply(solution) - second_rise).max() / max(np.abs(second_rise).max(), np.finfo(float).tiny))
-    into_first = np.zeros(heat.shape)
-    into_first[in_contact] = solution
-    return into_first, mismatch
+    heats, _ = gmres(operator, roller_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MAX_RESTARTS)
+    max_rise = max(np.abs(roller_rise).max(), np.finfo(float).tiny)
+    mismatch = float(np.abs(sum_rises(heats) - roller_rise).max() / max_rise)
+    body_heat = np.zeros(heat.shape)
+    body_heat[in_contact] = heats
+    return body_heat, mismatch
 
 
 def flash_temperature(
@@ -408,14 +407,14 @@ def flash_temperature(
         "heat_error": (body_power + roller_power) / power - 1 if power else 0.0,
         "temperature_mismatch": mismatch,
     }
-    inherited_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
-    inherited = solution[[name for name in inherited_names if name in solution.variables]].drop_attrs(deep=False)
-    temperatures = inherited.assign(values | scalars)
+    case_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
+    case_variables = solution[[name for name in case_names if name in solution.variables]].drop_attrs(deep=False)
+    temperatures = case_variables.assign(values | scalars)
     if depths is not None:
         moving_body, columns = MovingBody(body, heat.speeds.body, case.body.extent), slice(0, grid.cells_x)
-        inner_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]
+        depth_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]
         temperatures = temperatures.assign_coords(z=depths)
-        temperatures["body_temperature_rise"] = (("x", "y", "z"), np.stack(inner_rises, axis=-1))
+        temperatures["body_temperature_rise"] = (("x", "y", "z"), np.stack(depth_rises, axis=-1))
     if mismatch > 1e-6:  # the limit of equal temperatures
         message = f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest"
         warnings.warn(message, ConvergenceWarning, stacklevel=2)
@@ -469,10 +468,10 @@ def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, 
     edges = grid.x_edges
     # Rounding may place the centre of a loaded column beyond the end of the roller.
     under_roller = np.flatnonzero(((grid.x > roller_start) & (grid.x < roller_end)) | (pressure > 0).any(axis=1))
-    first, stop = int(under_roller[0]), int(under_roller[-1]) + 1
-    start = edges[first] if first > 0 else min(roller_start, edges[0])
-    end = edges[stop] if stop < grid.cells_x else max(roller_end, edges[-1])
-    return slice(first, stop), (float(start), float(end))
+    first_column, stop_column = int(under_roller[0]), int(under_roller[-1]) + 1
+    start = edges[first_column] if first_column > 0 else min(roller_start, edges[0])
+    end = edges[stop_column] if stop_column < grid.cells_x else max(roller_end, edges[-1])
+    return slice(first_column, stop_column), (float(start), float(end))
 
 
 def _find_maximum(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:

@@ -35,6 +35,7 @@ POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BEN
 and the number of the powers. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
 the more it amplifies the quadrature errors of a much lower wavenumber."""
 
+BLOCK_SIZE = 2048  # quadrature nodes whose waves are in memory at a time. Speed.
 PHASE_PER_NODE = 1.8  # phase that one Gauss node follows, radians. Accuracy.
 
 MOMENT_ORDER, MOMENT_PHASE = 16, 10.0
@@ -71,6 +72,17 @@ class LateralPanel:
             return np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi)
         compute_wave = np.cos if sign_y > 0 else np.sin
         return np.asarray(compute_wave(np.outer(self.fine_nodes, y)) * (self.weights[:, None] / np.pi))
+
+    def node_waves(self, y: FloatArray, sign_y: int, factors: FloatArray) -> FloatArray:
+        """Integrals of ``cos(k y)`` or ``sin(k y)`` times `factors` (fine) under unit amplitudes: array (node, y)."""
+        if self.interpolation is None:
+            return factors[:, None] * self.wave(y, sign_y)
+        total = np.zeros((self.nodes.size, y.size))
+        for first in range(0, self.fine_nodes.size, BLOCK_SIZE):
+            block = slice(first, first + BLOCK_SIZE)
+            panel = replace(self, fine_nodes=self.fine_nodes[block], weights=self.weights[block] * factors[block])
+            total += self.interpolation[block].T @ panel.wave(y, sign_y)
+        return total
 
     def load_waves(self, grid: Grid) -> tuple[FloatArray, FloatArray]:
         """Integrals of ``cos(k y)`` and ``sin(k y)`` over the cells along y: arrays (cell, fine)."""

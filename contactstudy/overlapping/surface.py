@@ -191,10 +191,10 @@ def end_kernel(request: EndRequest) -> EndKernel:
         totals = np.zeros((len(responses), parities, request.cells_y + 1, position_count**2))
         for panel in panels:
             cell_factor = request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))
-            panel_transforms = {}
-            for sign_y in {response.sign_y for response in responses}:
-                transform = transforms[sign_y] @ (panel.wave(offsets, sign_y).T * cell_factor)
-                panel_transforms[sign_y] = transform if panel.interpolation is None else transform @ panel.interpolation
+            panel_transforms = {
+                sign_y: transforms[sign_y] @ panel.node_waves(offsets, sign_y, cell_factor).T
+                for sign_y in {response.sign_y for response in responses}
+            }
             samples = np.zeros((len(responses), parities, panel.nodes.size, position_count, position_count))
             for node, sample in enumerate(_sample_panel(request, panel, positions, shortest)):
                 count = sample.shape[-1]

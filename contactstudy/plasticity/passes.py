@@ -66,12 +66,12 @@ class ElasticPlastic:
 
     def __post_init__(self) -> None:
         if isinstance(self.yield_stress, xr.DataArray):
-            profile = in_si("yield_stress", self.yield_stress, "Pa")
-            if profile.dims != ("z",) or "z" not in profile.coords:
-                raise InvalidInputError("yield_stress.dims", profile.dims, "('z',) with depths z in metres")
-            checks.increasing("yield_stress.z", profile["z"].values, "metres")
-            checks.positive("yield_stress", float(checks.coordinates("yield_stress", profile.values, "Pa").min()), "Pa")
-            checks.store(self, yield_stress=profile)
+            values = in_si("yield_stress", self.yield_stress, "Pa")
+            if values.dims != ("z",) or "z" not in values.coords:
+                raise InvalidInputError("yield_stress.dims", values.dims, "('z',) with depths z in metres")
+            checks.increasing("yield_stress.z", values["z"].values, "metres")
+            checks.positive("yield_stress", float(checks.coordinates("yield_stress", values.values, "Pa").min()), "Pa")
+            checks.store(self, yield_stress=values)
         else:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         checks.store_numbers(self)
@@ -118,9 +118,9 @@ COMPONENT_COUNTS = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # Occurrences of ea
 
 def compute_deviator(tensor: FloatArray) -> FloatArray:
     """Deviator of tensors."""
-    deviatoric = tensor.copy()
-    deviatoric[:3] -= tensor[:3].mean(axis=0)
-    return deviatoric
+    deviator = tensor.copy()
+    deviator[:3] -= tensor[:3].mean(axis=0)
+    return deviator
 
 
 def tensor_norm(tensor: FloatArray) -> FloatArray:
@@ -132,8 +132,8 @@ MAX_REPETITIONS = 300  # Bound on the repetitions of a pass
 MIXING_HISTORY = 6  # Number of earlier iterates in Anderson's mixing
 
 
-class State(NamedTuple):
-    """State of a selection of cells after passes."""
+class PlasticState(NamedTuple):
+    """Plastic strain of a selection of cells after passes."""
 
     strain: FloatArray  # (6, cell), plastic
     accumulated: FloatArray  # (cell), equivalent plastic strain
@@ -144,20 +144,20 @@ class State(NamedTuple):
 class Passage:
     """A pass over some cells of the cross-section."""
 
-    elastic: FloatArray  # (6, position, cell), stress of the contact, Pa
-    residual: Callable[[FloatArray], FloatArray]  # residual stress in the body by strains uniform along y
-    lateral: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
+    elastic_stress: FloatArray  # (6, position, cell), stress of the contact, Pa
+    compute_residual: Callable[[FloatArray], FloatArray]  # residual stress in the body by strains uniform along y
+    layers: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
 
-    cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
+    cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `layers`
     yield_stress: FloatArray  # (cell), in tension, Pa
 
     material: ElasticPlastic  # for its hardening
     tolerance: float  # change of the deviator over the yield stress
 
-    def solve(self, start: State) -> State:
+    def solve(self, start: PlasticState) -> PlasticState:
         """Return the state after the pass."""
-        stiffness = 2 * self.lateral.material.shear_modulus
-        elastic = self.elastic + self.residual(start.strain)[:, None]
+        stiffness = 2 * self.layers.material.shear_modulus
+        elastic = self.elastic_stress + self.compute_residual(start.strain)[:, None]
         flow = np.zeros_like(elastic)
         iterates, changes = (deque[FloatArray](maxlen=MIXING_HISTORY + 1) for _ in range(2))
         for _ in range(MAX_REPETITIONS):
@@ -170,31 +170,31 @@ class Passage:
             iterates.append(flow)
             changes.append(change)
             flow = _mix(iterates, changes)
-        return State(start.strain + next_strain[:, -1], accumulated, start.converged and converged)
+        return PlasticState(start.strain + next_strain[:, -1], accumulated, start.converged and converged)
 
     def _residual_stress(self, plastic_strain: FloatArray) -> FloatArray:
         """Residual stress (6, position, cell) by this pass's plastic strain, with every column in plane strain."""
         final_strain = plastic_strain[:, -1]
         column, layer = self.cell_indices
-        periodic_strain = np.zeros((6, self.lateral.positions, column.max() + 1, layer.max() + 1))
+        periodic_strain = np.zeros((6, self.layers.positions, column.max() + 1, layer.max() + 1))
         count = plastic_strain.shape[1]
         periodic_strain[:, :count, column, layer] = plastic_strain
-        decay_count = self.lateral.positions - count
+        decay_count = self.layers.positions - count
         decay = np.clip(2 - 2 * (np.arange(decay_count) + 0.5) / decay_count, 0.0, 1.0)
         periodic_strain[:, count:, column, layer] = (decay**2 * (3 - 2 * decay))[:, None] * final_strain[:, None]
-        stress = self.lateral.stresses(periodic_strain)[:, :count, column, layer]
+        stress = self.layers.stresses(periodic_strain)[:, :count, column, layer]
         # The correction for the body's ends grows with the fraction of the final strain reached at each position.
         norm = float(COMPONENT_COUNTS @ (final_strain**2).sum(axis=1))
         if norm:
             fraction = np.einsum("i,ipc,ic->p", COMPONENT_COUNTS, plastic_strain, final_strain) / norm
-            difference = self.residual(final_strain) - layer_stresses(self.lateral.material, final_strain)
+            difference = self.compute_residual(final_strain) - layer_stresses(self.layers.material, final_strain)
             stress += np.clip(fraction, 0.0, 1.0)[:, None] * difference[:, None]
         return np.asarray(stress)
 
-    def _return_mapping(self, trial: FloatArray, initial: State) -> tuple[FloatArray, FloatArray]:
+    def _return_mapping(self, trial: FloatArray, initial: PlasticState) -> tuple[FloatArray, FloatArray]:
         """Plastic strain of this pass, and accumulated strain; `trial` is the deviator before plastic flow."""
         kinematic = 2 / 3 * self.material.kinematic_hardening
-        modulus = 2 * self.lateral.material.shear_modulus + kinematic
+        modulus = 2 * self.layers.material.shear_modulus + kinematic
         stiffness = modulus + 2 / 3 * self.material.isotropic_hardening
         strain, accumulated = initial.strain, initial.accumulated
         flow = np.empty_like(trial)
@@ -275,13 +275,13 @@ class _CrossSection:
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
         # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
         period = int(next_fast_len(3 * y.size, real=True))
-        residual: Callable[[FloatArray], FloatArray] = partial(layer_stresses, self.body.material)
+        compute_residual: Callable[[FloatArray], FloatArray] = partial(layer_stresses, self.body.material)
         if not self.is_line_contact:
-            residual = cell_influence(self.cells, columns, layers)
+            compute_residual = cell_influence(self.cells, columns, layers)
         return Passage(
-            elastic=elastic,
-            residual=residual,
-            lateral=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
+            elastic_stress=elastic,
+            compute_residual=compute_residual,
+            layers=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
             cell_indices=(np.unique(columns, return_inverse=True)[1], layers - top_layer),
             yield_stress=self.yield_stress[cells],
             material=self.material,
@@ -321,8 +321,7 @@ def residual_stress(
     ----------
     stress : Dataset
         A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`. The
-        positions along x and z are the cells' midpoints, also beyond the yielding region. One position along x: a line
-        contact.
+        positions along x and z are cell midpoints, also beyond the yielding region; one along x is a line contact.
     body : Body
         The body, for its elastic constants and free ends.
     material : ElasticPlastic
@@ -330,8 +329,7 @@ def residual_stress(
     passes : int
         Number of passes; fewer if a pass leaves the state unchanged.
     substeps : int
-        Steps from one position along y to the next, between which the elastic stress is linear. The error falls with
-        their number.
+        Steps between neighbouring positions along y, with linear elastic stress. The error falls with their number.
     tolerance : float
         Accuracy of the stress at each position, over the yield stress.
 
@@ -342,8 +340,7 @@ def residual_stress(
         added to the contact's stresses; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
         `equivalent_plastic_strain`, accumulated; `plastic_flow`, the largest equivalent plastic strain of the pass;
         `residual_displacement_z` and `residual_displacement_y` of the top (m, relative to the depth; of a line contact
-        relative to the last depth); `converged`, whether every pass reached the tolerance. The contact is that of
-        the elastic body.
+        relative to the last depth); `converged`, whether every pass reached the tolerance. The contact remains elastic.
 
     Raises
     ------
@@ -375,14 +372,14 @@ def residual_stress(
     section, dims = _create_section(stress, body, material)
     cells = section.yielding_cells(np.zeros((6, 1)), NEAR_YIELD_RATIO)
     cell_count = section.yield_stress.size
-    state = State(np.zeros((6, cell_count)), np.zeros(cell_count), True)
+    state = PlasticState(np.zeros((6, cell_count)), np.zeros(cell_count), True)
     states: list[xr.Dataset] = []
     passage = section.create_passage(cells, substeps, tolerance) if cells.size else None
     for pass_number in range(1, passes + 1):
         while True:
             strain, accumulated, converged = state.strain.copy(), state.accumulated.copy(), state.converged
             if passage is not None:
-                start = State(strain[:, cells], accumulated[cells], converged)
+                start = PlasticState(strain[:, cells], accumulated[cells], converged)
                 strain[:, cells], accumulated[cells], converged = passage.solve(start)
             residual, displacement_z, displacement_y = section.residual_state(strain)
             if np.isin(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells).all():
@@ -398,7 +395,7 @@ def residual_stress(
             value = f"a plastic strain of {strain_norm.max():.2g} at {position}"
             hint = "lower the load, or give the material hardening: flow above the shakedown limit does not end"
             raise InvalidInputError("stress", value, f"such that plastic strains stay below {MAX_STRAIN:g}", hint)
-        state = State(strain, accumulated, converged)
+        state = PlasticState(strain, accumulated, converged)
         strains = state.strain.reshape(6, section.x.size, section.z.size)
         fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
         fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])
@@ -435,7 +432,7 @@ def _create_section(stress: xr.Dataset, body: Body, material: ElasticPlastic) ->
     elastic = stresses.reshape(*stresses.shape[:2], -1)
     section = _CrossSection(body=body, material=material, x=x, y=y[descending], z=z, elastic=elastic)
     # A line contact has one column along x, without ends.
-    check_solved_for(stress, body, "stress", only=("body.material",) if section.is_line_contact else ())
+    check_solved_for(stress, body, "stress", compared_names=("body.material",) if section.is_line_contact else ())
     if not section.is_line_contact:
         section.cells  # noqa: B018, rejects positions without cells
     return section, (dims["x"], dims["z"])

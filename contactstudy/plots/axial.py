@@ -25,10 +25,10 @@ from contactstudy.plots.style import (
     LEGEND_WIDTH,
     Units,
     fold_text,
+    is_near_singular_end,
     label_axes,
     line_styles,
     mark_at_top,
-    near_singular,
     new_axes,
     singular_ends,
     units,
@@ -85,7 +85,7 @@ def plot_axial_pressure(
     unit = units(case, si=si)
     ax = new_axes(ax)
     draw_section_maxima(ax, case, "pressure", unit, shift, **style)
-    label_axes(ax, unit.axis("x"), unit.stress_label("pressure"))
+    label_axes(ax, unit.axis_label("x"), unit.stress_label("pressure"))
     return ax
 
 
@@ -94,11 +94,11 @@ def draw_section_maxima(
 ) -> None:
     """Draw the largest value in each cross-section; omit the neighbourhood of singular ends, and mark these ends."""
     if variable == "pressure":
-        profile = axial_pressure(case)
+        maxima = axial_pressure(case)
     else:
-        profile = largest_sample(case, variable, along="x")[f"largest_{variable}"]
-    x = profile[dimension_along(profile, "x")].values
-    values = np.where(near_singular(case, x), np.nan, profile.values)
+        maxima = largest_sample(case, variable, along="x")[f"largest_{variable}"]
+    x = maxima[dimension_along(maxima, "x")].values
+    values = np.where(is_near_singular_end(case, x), np.nan, maxima.values)
     (line,) = ax.plot(x / unit.length + shift, values / unit.stress, **style)
     mark_at_top(ax, [end / unit.length + shift for end in singular_ends(case)], line.get_color())
 
@@ -154,7 +154,7 @@ def plot_comparison(
         draw_section_maxima(ax, case, variable, unit, shift, label=fold_text(name, LEGEND_WIDTH), **style)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
-    x_label = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
+    x_label = unit.axis_label("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
     label_axes(ax, x_label, unit.stress_label(variable))
     return ax
 
@@ -215,7 +215,7 @@ def plot_depth(
     ax.set_ylim(depth.max() / unit.length, depth.min() / unit.length)
     ax.set_title(f"below {unit.position('x', x)}, {unit.position('y', y)}", fontsize="medium")
     ax.legend(frameon=False, fontsize="small")
-    label_axes(ax, "stress over $p_0$" if not si else "stress (MPa)", unit.axis("z"))
+    label_axes(ax, "stress over $p_0$" if not si else "stress (MPa)", unit.axis_label("z"))
     return ax
 
 
@@ -307,14 +307,14 @@ def plot_film_line(
     unit, ax = units(case, si=si), new_axes(ax)
     axis, fixed_axis, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
     line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed_axis: position})
-    along = line[axis].values / unit.length
+    line_positions = line[axis].values / unit.length
     film_style, pressure_style, slice_style = line_styles(3)
-    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **film_style)
+    ax.plot(line_positions, 1e6 * line["film_thickness"].values, label="film", **film_style)
     if axis == "x" and "slice_film" in case:
         slices = case["slice_film"].sel(x=line["x"])
-        ax.plot(along, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
+        ax.plot(line_positions, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
     pressure_axes = ax.twinx()
-    pressure_axes.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
+    pressure_axes.plot(line_positions, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
     ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
     pressure_axes.set_ylim(bottom=0.0)
     if axis == "y":
@@ -322,7 +322,7 @@ def plot_film_line(
         ax.set_xlim(-half_range, half_range)
     pressure_axes.set_ylabel(unit.stress_label("pressure"))
     ax.legend(handles=[*ax.lines, *pressure_axes.lines], loc="lower center", frameon=False, fontsize="small")
-    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", pressure_axes)
+    label_axes(ax, unit.axis_label(axis), "film thickness, $h$ (µm)", pressure_axes)
     return ax
 
 

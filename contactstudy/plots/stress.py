@@ -41,11 +41,11 @@ def _plane_arrays(
             f"given at two or more positions along {horizontal} and along {vertical}",
         )
     plane = plane.sortby(dims)
-    first, second = (plane[dim].values / unit.length for dim in dims)
-    return first, second, plane.transpose(*dims[::-1]).values / unit.stress
+    across, down = (plane[dim].values / unit.length for dim in dims)
+    return across, down, plane.transpose(*dims[::-1]).values / unit.stress
 
 
-def plane_stress(
+def interpolate_plane(
     case: xr.Dataset, field: xr.DataArray, position: dict[str, float], unit: Units
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Positions and values (down, across) of a field in a plane."""
@@ -105,7 +105,7 @@ def plot_stress_plane(
     unit = units(case, si=si)
     plane_position = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
     field, bound = cap_field(case, measure(case, variable))
-    across, depths, values = plane_stress(case, field, plane_position, unit)
+    across, depths, values = interpolate_plane(case, field, plane_position, unit)
     ((normal, position),) = plane_position.items()
     horizontal, vertical = (axis for axis in "xyz" if axis != normal)
     ax = new_axes(ax, (6.4, 3.2))
@@ -118,12 +118,12 @@ def plot_stress_plane(
         is_clipped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
         label = unit.stress_label(variable) + (" (unbounded at the singular end)" if is_clipped else "")
         fold_labels(ax.figure.colorbar(contours, ax=ax, label=label).ax)
-    label_axes(ax, unit.axis(horizontal), unit.axis(vertical))
+    label_axes(ax, unit.axis_label(horizontal), unit.axis_label(vertical))
     return ax
 
 
 def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, float], unit: Units) -> None:
-    """Mark the largest value in the body, ``peak_<variable>``, with its distance from the plane if it lies beside."""
+    """Mark the largest value in the body, ``peak_<variable>``, with its distance from the plane unless it is 0."""
     name = f"peak_{variable}"
     if any(f"{name}{suffix}" not in case for suffix in ("", "_x", "_y", "_z")) or not np.isfinite(float(case[name])):
         return
@@ -200,10 +200,10 @@ def plot_end_face(
     section = in_plane(case, variables=variable, y=0.0)[variable]
     face_stress = in_plane(case, variables=variable, x=face_x)[variable]
     y_dim = dimension_along(face_stress, "y")
-    is_outer = side * face_stress[y_dim] > 0
+    is_on_side = side * face_stress[y_dim] > 0
     # The fold belongs to both halves, and takes its values from the plane y = 0.
     fold = section.sel({dimension_along(section, "x"): face_x}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
-    half_stress = xr.concat([fold, face_stress[{y_dim: is_outer.values}]], y_dim).rename(variable)
+    half_stress = xr.concat([fold, face_stress[{y_dim: is_on_side.values}]], y_dim).rename(variable)
     x, z, section_values = _plane_arrays(section, "x", "z", unit)
     y, _, face_values = _plane_arrays(half_stress, "y", "z", unit)
     x = np.abs(x - face_x / unit.length)
@@ -223,5 +223,5 @@ def plot_end_face(
     sign, unit_suffix = "" if side > 0 else "-", unit.over_length
     bar = ax.figure.colorbar(contours, ax=ax, label=unit.stress_label(variable))
     x_label = f"on the end face, ${sign}y{unit_suffix}$   |   in the plane $y = 0$, $x{unit_suffix}$ from the face"
-    label_axes(ax, x_label, unit.axis("z"), bar.ax)
+    label_axes(ax, x_label, unit.axis_label("z"), bar.ax)
     return ax

@@ -14,8 +14,8 @@ from contactstudy.analysis import axial_pressure, dimension_along, measure, sing
 from contactstudy.arrays.variables import DERIVED, UNKNOWN_ERROR, index_of, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
-from contactstudy.plots.stress import plane_stress, plot_stress_plane
-from contactstudy.plots.study_map import TICK_WIDTH, describe_value, most_solved, scale_of, scale_values, select_one
+from contactstudy.plots.stress import interpolate_plane, plot_stress_plane
+from contactstudy.plots.study_map import TICK_WIDTH, choose_unit, choose_values, describe_value, scale_values, select
 from contactstudy.plots.style import (
     LEGEND_STYLE,
     MARKERS,
@@ -35,12 +35,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Entry = tuple[float, xr.Dataset]  # e/a and the case
-LoadCase = Callable[[xr.Dataset], xr.Dataset]  # Takes the part of a study with one case; returns the case
+DistanceCase = tuple[float, xr.Dataset]  # e/a and the case
+LoadCase = Callable[[xr.Dataset], xr.Dataset]  # Function that returns the case of a selection of a study
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
-TITLE_WIDTH = 60  # letters in a line of the title
-PLATEAU = 0.1  # Largest relative deviation from the pressure at mid-length of a level curve
+TITLE_WIDTH = 60  # Maximum number of letters in a line of the title
+LEVEL_TOLERANCE = 0.1  # Largest relative deviation from the pressure at mid-length of a level curve
 
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")  # Default quantities
 END_LOADS = ("end_load_first", "end_load_last")  # Replace the peak pressure if it is singular in every case
@@ -48,7 +48,7 @@ OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "lines
 
 ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
-LEGEND_COLUMN = 22  # letters of a name in the legend next to the axes
+LEGEND_COLUMN = 22  # Maximum number of letters of a name in a legend beside the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
 
@@ -103,19 +103,19 @@ def plot_study_lines(
     axes_of_study = (x,) if hue is None else (x, hue)
     for parameter in axes_of_study:
         if parameter not in dataset[names[0]].dims:
-            swept = ", ".join(map(str, dataset[names[0]].dims))
-            raise InvalidInputError("x, hue", axes_of_study, f"swept parameters: {swept}")
+            swept_text = ", ".join(map(str, dataset[names[0]].dims))
+            raise InvalidInputError("x, hue", axes_of_study, f"swept parameters: {swept_text}")
     columns = 2 - len(names) % 2  # without an empty panel
     rows = len(names) // columns
     size = (4.0 * columns + (0.6 if hue is None else 2.0), 3.2 * rows + 0.4)
     figure, panels = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", sharex=True)
-    fixed_parameters = most_solved(dataset[names[0]], axes_of_study, selection or {})
-    stored_names = [entry for name in names for entry in (name, f"{name}_error") if entry in dataset]
-    lines = select_one(dataset[stored_names], axes_of_study, fixed_parameters)
+    fixed_parameters = choose_values(dataset[names[0]], axes_of_study, selection or {})
+    stored_names = [stored_name for name in names for stored_name in (name, f"{name}_error") if stored_name in dataset]
+    lines = select(dataset[stored_names], axes_of_study, fixed_parameters)
     marks: dict[str, dict[str, Any]] = {}
     for ax, name in zip(panels.flat, names, strict=True):
         marks |= _draw_panel(ax, lines, name, x, hue)
-    figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
+    figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_count_extra_lines, panels.flat)))
     if hue is not None:
         handles, labels = panels[0, 0].get_legend_handles_labels()
         title = fold_text(_legend_texts(dataset[hue], hue)[0], LEGEND_COLUMN)
@@ -138,22 +138,22 @@ def _draw_panel(ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | Non
     """Draw one quantity; return the styles of the marks that a legend must explain, by label."""
     marks: dict[str, dict[str, Any]] = {}
     values, label = scale_values(dataset[name], name)
-    errors, without_estimate = _errors(dataset, name)
+    errors, lacks_estimate = _select_errors(dataset, name)
     is_numeric = np.issubdtype(values[x].dtype, np.number)
     x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
     positions = x_values.values if is_numeric else np.arange(x_values.size)
-    for selection, style in _lines(values, hue, LEGEND_COLUMN):
-        line, bars, open_cases = (array.isel(selection).values for array in (values, errors, without_estimate))
+    for selection, style in _style_lines(values, hue, LEGEND_COLUMN):
+        line, bars, is_open = (array.isel(selection).values for array in (values, errors, lacks_estimate))
         finite_line = np.where(np.isinf(line), np.nan, line)
         (curve,) = ax.plot(positions, finite_line, **style)
         if np.isnan(line).all():
             curve.set_label("_unsolved")  # omitted in the legend
         if np.isfinite(bars).any():
             ax.errorbar(positions, finite_line, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
-        if np.isfinite(finite_line[open_cases]).any():
+        if np.isfinite(finite_line[is_open]).any():
             marks[UNKNOWN_ERROR] = {"marker": "o", **OPEN_MARK}
-            if (np.isfinite(finite_line) & ~open_cases).any():
-                open_values = np.where(open_cases, finite_line, np.nan)
+            if (np.isfinite(finite_line) & ~is_open).any():
+                open_values = np.where(is_open, finite_line, np.nan)
                 ax.plot(positions, open_values, color=style["color"], marker=style["marker"], **OPEN_MARK)
             else:
                 curve.set(**OPEN_MARK | {"linestyle": style["linestyle"]})
@@ -172,7 +172,7 @@ def _draw_panel(ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | Non
     return marks
 
 
-def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
+def _style_lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
     """Yield the index along `hue`, and the style with the folded label, of each line; one line without `hue`."""
     labels = [None] if hue is None else [fold_text(text, width) for text in _legend_texts(values[hue], hue)[1]]
     for index, (label, style) in enumerate(zip(labels, line_styles(len(labels)), strict=True)):
@@ -180,31 +180,31 @@ def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[
         yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
 
 
-def _extra_lines(ax: Axes) -> int:
+def _count_extra_lines(ax: Axes) -> int:
     """Return the number of text lines below an axis in excess of two: one of ticks and one of the label."""
-    names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
-    return names + ax.get_xlabel().count("\n")
+    tick_lines = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
+    return tick_lines + ax.get_xlabel().count("\n")
 
 
-def _errors(dataset: xr.Dataset, name: str) -> tuple[xr.DataArray, xr.DataArray]:
+def _select_errors(dataset: xr.Dataset, name: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Finite errors in the unit of the panel, and the finite values whose error is not estimated."""
     values, missing_error = dataset[name], np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
     errors = dataset.get(f"{name}_error", xr.full_like(values, missing_error, dtype=np.float64))
-    factor, _ = scale_of(values)
+    factor, _ = choose_unit(values)
     return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
 
 def _legend_texts(values: xr.DataArray, name: str) -> tuple[str, list[str]]:
     """Title of a legend, and texts of a parameter's values in the title's unit, or of zipped parameters."""
-    zipped = [
+    zipped_values = [
         coordinate.values
         for parameter, coordinate in values.coords.items()
         if parameter != name and coordinate.dims == values.dims and coordinate.attrs.get("comment") != DERIVED
     ]
-    if np.issubdtype(values.dtype, np.number) and not zipped:
-        scaled, title = scale_values(values, name)
-        return title, [f"{value:g}" for value in scaled.values]
-    entries = zip(*(zipped or [values.values]), strict=True)
+    if np.issubdtype(values.dtype, np.number) and not zipped_values:
+        scaled_values, title = scale_values(values, name)
+        return title, [f"{value:g}" for value in scaled_values.values]
+    entries = zip(*(zipped_values or [values.values]), strict=True)
     return name.replace("_", " "), [", ".join(map(escape_dollars, entry)) for entry in entries]
 
 
@@ -252,15 +252,15 @@ def plot_traction_curve(
     checks.known_name("creepage", creepage, FORCES)
     name, symbol = FORCES[creepage]
     require(dataset, name, "normal_load")
-    swept = ", ".join(map(str, dataset[name].dims))
+    names = ", ".join(map(str, dataset[name].dims))
     if creepage not in dataset[name].dims or "friction" not in dataset.coords:
-        raise InvalidInputError("dataset", f"with {swept or 'no parameter'} swept", f"an opened study over {creepage}")
+        raise InvalidInputError("dataset", f"with {names or 'no parameter'} swept", f"an opened study over {creepage}")
     if hue is not None and hue not in dataset[name].dims:
-        raise InvalidInputError("hue", hue, f"a swept parameter: {swept}")
+        raise InvalidInputError("hue", hue, f"a swept parameter: {names}")
     axes_of_study = (creepage,) if hue is None else (creepage, hue)
-    values = select_one(dataset[name] / (dataset["friction"] * dataset["normal_load"]), axes_of_study, selection or {})
+    values = select(dataset[name] / (dataset["friction"] * dataset["normal_load"]), axes_of_study, selection or {})
     ax = new_axes(ax)
-    for selection_of_line, style in _lines(values, hue, TICK_WIDTH):
+    for selection_of_line, style in _style_lines(values, hue, TICK_WIDTH):
         line = values.isel(selection_of_line).dropna(creepage)
         ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
@@ -300,7 +300,7 @@ def plot_edge_effect(
     selection : mapping, optional
         Values of other swept parameters; default: the first.
     load : callable
-        Takes the part of a study with one case, returns the case with its surfaces; default: reads the Dataset.
+        Returns the case of a selection of the study, with its surfaces; default: reads the Dataset.
 
     Returns
     -------
@@ -323,23 +323,23 @@ def plot_edge_effect(
     has_bodies = "body" in dataset.dims
     bodies = [str(name) for name in np.atleast_1d(dataset["body"].values)] if "body" in dataset.coords else [""]
 
-    def entries_of(body: str) -> list[Entry]:
+    def select_body(body: str) -> list[DistanceCase]:
         body_cases = (dataset.sel(body=body) if has_bodies else dataset).dropna("e_over_a", subset=["hertz_half_width"])
         return [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
 
-    def with_surfaces(entries: list[Entry]) -> list[Entry]:
-        return [(e, case) for e, part in entries if "pressure" in (case := load(part))]
+    def load_surfaces(entries: list[DistanceCase]) -> list[DistanceCase]:
+        return [(e, case) for e, selection_of_case in entries if "pressure" in (case := load(selection_of_case))]
 
-    finite = next((body for body in bodies if body != "half-space"), bodies[0])
-    candidates = entries_of(finite)
+    body = next((body for body in bodies if body != "half-space"), bodies[0])
+    candidates = select_body(body)
     indices = sorted(set(np.linspace(0, len(candidates) - 1, min(most, len(candidates))).round().astype(int)))
-    entries = with_surfaces([candidates[index] for index in indices])
+    entries = load_surfaces([candidates[index] for index in indices])
     if not entries:
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
-    half_spaces = entries_of("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
+    half_spaces = select_body("half-space") if has_bodies and "half-space" in bodies and body != "half-space" else []
     # On a half-space e/a only shifts the coordinate: one case suffices.
     same_distance = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
-    comparison = with_surfaces(same_distance[:1])
+    comparison = load_surfaces(same_distance[:1])
     stress_entries = [(e, case) for e, case in entries if "von_mises" in case]
     height = 0.5 + 1.1 * len(stress_entries)
     figure = pyplot.figure(figsize=(5.4, 4.0 + height), layout="constrained")
@@ -370,7 +370,7 @@ def _select_other_dims(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tup
     return dataset, remarks
 
 
-def _draw_pressures(ax: Axes, entries: list[Entry], comparison: list[Entry]) -> None:
+def _draw_pressures(ax: Axes, entries: list[DistanceCase], comparison: list[DistanceCase]) -> None:
     """Pressure along the axis, one line per e/a."""
     for (end_distance, case), style in zip(entries, line_styles(len(entries)), strict=True):
         plot_axial_pressure(case, ax, label=f"free end, $e/a$ = {end_distance:g}", **style)
@@ -385,28 +385,28 @@ def _draw_pressures(ax: Axes, entries: list[Entry], comparison: list[Entry]) -> 
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False, fontsize="small", ncols=3)
 
 
-def _level_distance(entries: list[Entry]) -> float:
+def _level_distance(entries: list[DistanceCase]) -> float:
     """Distance from the free end, in half-widths, beyond which every pressure is level up to mid-length."""
-    limits = []
+    distances = []
     for _, case in entries:
         unit = units(case, si=False)
         axial = axial_pressure(case)
         x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
         mid_length = 0.5 * (x[0] + x[-1])
         in_half = x <= mid_length
-        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU
+        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < LEVEL_TOLERANCE
         varying_x = x[in_half][~is_level]
-        limits.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
-    return max(limits)
+        distances.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
+    return max(distances)
 
 
-def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: float) -> None:
+def _draw_planes(figure: Any, entries: list[DistanceCase], distance: float, depth: float) -> None:
     """One panel of von Mises stress per e/a below each other, with one colour scale."""
     from matplotlib.colors import PowerNorm
     from matplotlib.ticker import MaxNLocator
 
     fields = [(case, cap_field(case, measure(case, "von_mises"))[0]) for _, case in entries]
-    planes = [plane_stress(case, field, {"y": 0.0}, units(case, si=False)) for case, field in fields]
+    planes = [interpolate_plane(case, field, {"y": 0.0}, units(case, si=False)) for case, field in fields]
     max_stress = max(float(np.nanmax(values[z <= depth][:, x <= distance])) for x, z, values in planes)
     levels = MaxNLocator(20).tick_values(0.0, max_stress)
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
@@ -415,7 +415,7 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
         plot_stress_plane(case, "von_mises", y=0.0, ax=ax, levels=levels, colorbar=False)
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
     axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, *_ in planes)))
-    axes[-1].set_xlabel(unit.axis("x"))
+    axes[-1].set_xlabel(unit.axis_label("x"))
     for ax in axes:
         # The stress below the end is several times that below mid-length: the square root separates both by colour.
         ax.collections[0].set_norm(PowerNorm(0.5, 0.0, levels[-1]))
@@ -430,8 +430,8 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     dataset : Dataset
         From :func:`contactstudy.open_study`.
     selection : mapping, optional
-        Values of swept parameters. Of parameters without an axis, line or panel the figures show the first value with
-        most solved cases, and list it in the title.
+        Values of swept parameters. The title lists the values of parameters without an axis, line or panel; default:
+        the first with most solved cases.
 
     Returns
     -------
@@ -458,18 +458,18 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
 def figures_with_selections(
     dataset: xr.Dataset, selection: Mapping[str, Any], load: LoadCase
 ) -> dict[str, tuple[Figure, list[str]]]:
-    """Figures of :func:`study_figures`, each with the parameters of which it shows one value among several."""
+    """Figures of :func:`study_figures`, each with the parameters that the figure shows at one of several values."""
     dataset = dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dataset.sizes[dim] > 1}
     swept = sorted(sizes, key=lambda dim: -sizes[dim])
     figures = {}
     if "e_over_a" in dataset.dims and "hertz_half_width" in dataset:
-        fixed_parameters = most_solved(dataset["hertz_half_width"], EDGE_AXES, {})
+        fixed_parameters = choose_values(dataset["hertz_half_width"], EDGE_AXES, {})
         with contextlib.suppress(ContactStudyError):  # no case has a pressure
             figure = plot_edge_effect(dataset, selection=fixed_parameters, load=load)
             figures["edge_effect"] = (figure, [name for name in swept if name not in EDGE_AXES])
     names = [name for name in swept if name != "case"]
-    if names and (quantities := _finite_quantities(dataset)):
+    if names and (quantities := _choose_quantities(dataset)):
         figures["study"] = (
             plot_study_lines(dataset, quantities, x=names[0], hue=names[1] if len(names) > 1 else None),
             names[2:],
@@ -477,10 +477,10 @@ def figures_with_selections(
     return figures
 
 
-def _finite_quantities(dataset: xr.Dataset) -> list[str]:
+def _choose_quantities(dataset: xr.Dataset) -> list[str]:
     """Quantities with finite values; the end loads where every peak is singular."""
-    present = [name for name in QUANTITIES if name in dataset]
-    finite = [name for name in (*present, *END_LOADS) if name in dataset and np.isfinite(dataset[name]).any()]
-    if "peak_pressure" in present and "peak_pressure" not in finite and set(finite) & set(END_LOADS):
-        return sorted(finite, key=lambda name: name not in END_LOADS)
-    return [name for name in finite if name in QUANTITIES] or present
+    stored = [name for name in QUANTITIES if name in dataset]
+    finite_names = [name for name in (*stored, *END_LOADS) if name in dataset and np.isfinite(dataset[name]).any()]
+    if "peak_pressure" in stored and "peak_pressure" not in finite_names and set(finite_names) & set(END_LOADS):
+        return sorted(finite_names, key=lambda name: name not in END_LOADS)
+    return [name for name in finite_names if name in QUANTITIES] or stored

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Array = TypeVar("Array", xr.DataArray, xr.Dataset)
 
 
-def select_one(array: Array, axes: tuple[str, ...], selection: Mapping[str, Any]) -> Array:
+def select(array: Array, axes: tuple[str, ...], selection: Mapping[str, Any]) -> Array:
     """Array, or Dataset, over the dimensions `axes`, with the selected value of every other dimension."""
     swept = [str(dim) for dim in array.dims if dim not in axes]
     for name in selection:
@@ -39,15 +39,15 @@ def select_one(array: Array, axes: tuple[str, ...], selection: Mapping[str, Any]
     return array
 
 
-def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of the parameters other than `axes`: selected values, or the first with most solved cases."""
+def choose_values(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of the parameters other than `axes`: selected, or the first combination with the most solved cases."""
     dims = [str(dim) for dim in array.dims if str(dim) not in axes]
     choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in dims]
     combinations = [dict(zip(dims, values, strict=True)) for values in itertools.product(*choices)]
-    return max(combinations, key=lambda values: int(np.isfinite(select_one(array, axes, values)).sum()))
+    return max(combinations, key=lambda values: int(np.isfinite(select(array, axes, values)).sum()))
 
 
-def scale_of(array: xr.DataArray) -> tuple[float, str]:
+def choose_unit(array: xr.DataArray) -> tuple[float, str]:
     """Size in SI, and name, of the unit that suits a figure's axis; an empty name for a pure number."""
     max_magnitude = float(abs(array).where(np.isfinite(array)).max())
     return unit_for(max_magnitude, str(array.attrs.get("units", "1")))
@@ -56,7 +56,7 @@ def scale_of(array: xr.DataArray) -> tuple[float, str]:
 def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or quantity: stresses in MPa or GPa, lengths in µm or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
-    factor, unit = scale_of(array)
+    factor, unit = choose_unit(array)
     return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
 
 
@@ -69,8 +69,8 @@ def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
 
 
 STATES = ("failed", "skipped", "excluded", "missing")  # States of cases without a result
-TICK_WIDTH = 18  # letters of a name at an axis
-MAX_CELL_LABELS = 80  # cells up to which every cell has its value as text
+TICK_WIDTH = 18  # Maximum number of letters of a name at an axis
+MAX_CELL_LABELS = 80  # Maximum number of cells with their values as text
 
 
 def plot_study_map(
@@ -132,7 +132,7 @@ def plot_study_map(
             raise InvalidInputError("x, y", (x, y), f"two swept parameters among {', '.join(map(str, array.dims))}")
     if not np.issubdtype(array.dtype, np.number):
         raise InvalidInputError("variable", name, "a number of each case")
-    values = select_one(array, (x, y), selection or {}).transpose(y, x)
+    values = select(array, (x, y), selection or {}).transpose(y, x)
     values, meaning = scale_values(values, name)
     array_values = np.asarray(values.values, dtype=np.float64)
     if not np.isfinite(array_values).any():
@@ -165,12 +165,12 @@ def plot_study_map(
             ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
     _draw_missing_legend(ax, dataset, values, selection or {})
     for parameter, ticks, axis in ((x, x_ticks, ax.xaxis), (y, y_ticks, ax.yaxis)):
-        numeric = np.issubdtype(values[parameter].dtype, np.number)
-        steps, text = scale_values(values[parameter], parameter) if numeric else (values[parameter], parameter)
-        axis.set_ticks(
-            ticks, [f"{step:g}" if numeric else fold_text(escape_dollars(step), TICK_WIDTH) for step in steps.values]
-        )
-        axis.set_label_text(text)
+        is_numeric = np.issubdtype(values[parameter].dtype, np.number)
+        coordinate, title = scale_values(values[parameter], parameter) if is_numeric else (values[parameter], parameter)
+        entries = coordinate.values
+        texts = [f"{value:g}" if is_numeric else fold_text(escape_dollars(value), TICK_WIDTH) for value in entries]
+        axis.set_ticks(ticks, texts)
+        axis.set_label_text(title)
     bar = ax.figure.colorbar(mesh, ax=ax, label=label or meaning)
     fold_labels(ax, bar.ax)
     return ax
@@ -178,12 +178,12 @@ def plot_study_map(
 
 def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
     """Array over two parameters, from cases along one dimension; NaN for a pair of values without a case."""
-    varying_names = [
+    case_dims = [
         str(dim) for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))
     ]
-    if x == y or not varying_names or varying_names[0] in (x, y):
+    if x == y or not case_dims or case_dims[0] in (x, y):
         return array
-    (dim,) = varying_names
+    (dim,) = case_dims
     stacked = array.drop_vars([name for name in array.coords if name not in (x, y)]).set_index({dim: (x, y)})
     index = stacked.indexes[dim]
     if index.has_duplicates:
@@ -210,7 +210,7 @@ def _draw_missing_legend(ax: Axes, dataset: xr.Dataset, values: xr.DataArray, se
         status = _unstack_cases(dataset["status"], x, y)
         if {x, y} <= set(status.dims):
             other_values = {name: value for name, value in selection.items() if name in status.dims}
-            states = select_one(status, (x, y), other_values).transpose(y, x).values[is_missing.values]
+            states = select(status, (x, y), other_values).transpose(y, x).values[is_missing.values]
             counts = Counter(str(state) for state in states if str(state) in STATES)
             text += f" ({', '.join(f'{number} {state}' for state, number in counts.items())})" if counts else ""
     patch = Patch(facecolor="0.85", edgecolor="0.6", hatch="//", label=text)

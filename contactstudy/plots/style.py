@@ -47,9 +47,9 @@ LETTER_WIDTH = 0.073  # Width of a letter in a label, inches
 MIN_LINE_LENGTH = 14  # Least length of a folded line, letters
 LEGEND_STYLE: dict[str, Any] = {"frameon": False, "fontsize": "small"}
 LEGEND_WIDTH = 40  # Letters in a line of a legend within the axes
-WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
+WORD_PATTERN = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # a formula is one word
 FOLD_CHARACTERS = (";:", ",", "")  # Letters after which a text is folded, first choice first; finally after any word
-MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
+MARKUP_PATTERN = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
 class Units(NamedTuple):
@@ -60,7 +60,7 @@ class Units(NamedTuple):
     over_length: str
     over_stress: str
 
-    def axis(self, axis: str) -> str:
+    def axis_label(self, axis: str) -> str:
         """Label of positions along x, y or z."""
         return f"{AXIS_MEANINGS[axis]}, ${axis}{self.over_length}$"
 
@@ -71,12 +71,12 @@ class Units(NamedTuple):
 
     def stress_label(self, variable: str) -> str:
         """Label of a stress or a pressure."""
-        entry = specification(variable)
-        if entry is None or not entry.symbol:
-            meaning = entry.long_name if entry else variable.replace("_", " ")
+        known_variable = specification(variable)
+        if known_variable is None or not known_variable.symbol:
+            meaning = known_variable.long_name if known_variable else variable.replace("_", " ")
             return f"{meaning}{' over $p_0$' if self.over_stress == '/p_0' else ' (MPa)'}"
-        meaning = "" if variable in STRESSES else f"{entry.long_name}, "
-        return f"{meaning}${entry.symbol}{self.over_stress}$"
+        meaning = "" if variable in STRESSES else f"{known_variable.long_name}, "
+        return f"{meaning}${known_variable.symbol}{self.over_stress}$"
 
 
 MILLIMETRES = Units(1e-3, 1e6, r"\ \mathrm{(mm)}", r"\ \mathrm{(MPa)}")  # Units of figures with ``si=True``
@@ -121,7 +121,7 @@ def line_styles(count: int) -> list[dict[str, Any]]:
 
 def fold_text(text: str, width: int) -> str:
     """Break a text into lines of at most `width` letters: after ; or :, else after commas, else between words."""
-    return "\n".join(_fold_words(WORD.findall(text), width, FOLD_CHARACTERS))
+    return "\n".join(_fold_words(WORD_PATTERN.findall(text), width, FOLD_CHARACTERS))
 
 
 def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
@@ -146,15 +146,15 @@ def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str
 
 def _visible_length(text: str) -> int:
     """Letters of a text without the markup of formulas."""
-    return len(MARKUP.sub("", text))
+    return len(MARKUP_PATTERN.sub("", text))
 
 
 def fold_labels(*axes: Axes) -> None:
     """Fold labels and titles of axes to the length of their side."""
     for ax in axes:
-        dots = ax.get_window_extent()
+        extent = ax.get_window_extent()
         width_in_letters, height_in_letters = (
-            max(MIN_LINE_LENGTH, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (dots.width, dots.height)
+            max(MIN_LINE_LENGTH, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (extent.width, extent.height)
         )
         for text, width in (
             (ax.xaxis.label, width_in_letters),
@@ -184,13 +184,13 @@ def singular_ends(case: xr.Dataset) -> list[float]:
     is_singular = [np.isinf(float(case.get(f"end_pressure_{end}", 0.0))) for end in ("first", "last")]
     if not any(is_singular) or "pressure" not in case:
         return []
-    facing = under_roller(case).values
-    lower_edges, upper_edges = (edges.values[facing] for edges in cell_edges(case["pressure"], "x"))
+    is_facing = under_roller(case).values
+    lower_edges, upper_edges = (edges.values[is_facing] for edges in cell_edges(case["pressure"], "x"))
     ends = np.array([lower_edges[0], upper_edges[-1]])
     return [float(end) for end in ends[is_singular]]
 
 
-def near_singular(case: xr.Dataset, x: FloatArray) -> BoolArray:
+def is_near_singular_end(case: xr.Dataset, x: FloatArray) -> BoolArray:
     """Whether positions along x lie within `OMITTED_DISTANCE` of a singular end."""
     distance = OMITTED_DISTANCE * float(case.get("hertz_half_width", 0.0))
     return np.asarray((np.abs(x[:, None] - singular_ends(case)) < distance).any(axis=1))
@@ -201,7 +201,7 @@ def cap_field(case: xr.Dataset, field: xr.DataArray) -> tuple[xr.DataArray, floa
     if not singular_ends(case):
         return field, np.inf
     x = dimension_along(field, "x")
-    is_regular = ~near_singular(case, positions(field, "x").values)
+    is_regular = ~is_near_singular_end(case, positions(field, "x").values)
     bound = float(field.isel({x: is_regular}).max()) if is_regular.any() else np.nan
     if not np.isfinite(bound):
         return field, np.inf
@@ -252,10 +252,10 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     for name in formats:
         if name not in supported:
             raise InvalidInputError("formats", name, f"among {', '.join(sorted(supported))}")
-    base = Path(path)
-    if base.suffix.removeprefix(".") in formats:
-        base = base.with_suffix("")
-    files = [base.with_name(f"{base.name}.{name}") for name in formats]
+    base_path = Path(path)
+    if base_path.suffix.removeprefix(".") in formats:
+        base_path = base_path.with_suffix("")
+    files = [base_path.with_name(f"{base_path.name}.{name}") for name in formats]
     with matplotlib.rc_context({"pdf.fonttype": 42}):
         for file, name in zip(files, formats, strict=True):
             with checks.writing(file) as temporary_path:

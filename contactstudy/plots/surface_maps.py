@@ -23,12 +23,12 @@ HEAT_COLORS = "inferno"
 STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
-BORDER_LEVEL = 0.01  # Squared pressure, linear in the distance, at the drawn border over the largest one
+BORDER_LEVEL = 0.01  # Squared pressure at the drawn border over its maximum; it is linear in the distance
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # Length of the longest arrow over the arrows' spacing along x
 VECTORS = ("traction", "slip")
 EQUAL_MAXIMA = 1e-6  # relative difference of two maxima that are equal up to the solver's tolerance
-SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
+TEMPERATURE_NAMES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
 class Surface:
@@ -61,8 +61,8 @@ def _draw_border(ax: Axes, surface: Surface, values: FloatArray, threshold: floa
         return None
     # The contour may reach the outer edges of the cells.
     x, y = (
-        np.concatenate([[line[0] - 0.5 * (line[1] - line[0])], line, [line[-1] + 0.5 * (line[-1] - line[-2])]])
-        for line in (surface.x, surface.y)
+        np.concatenate([[axis[0] - 0.5 * (axis[1] - axis[0])], axis, [axis[-1] + 0.5 * (axis[-1] - axis[-2])]])
+        for axis in (surface.x, surface.y)
     )
     return ax.contour(x, y, np.pad(values, 1), levels=[threshold], **style)
 
@@ -85,20 +85,20 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
 
 
-def _crop(ax: Axes, surface: Surface) -> None:
+def _crop_axes(ax: Axes, surface: Surface) -> None:
     """Limit the axes to the contact with a margin."""
-    for centres, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
+    for centres, axis, set_limits in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
         loaded_indices = np.flatnonzero(surface.in_contact.any(axis=axis))
         if loaded_indices.size > 1:
             low, high = centres[loaded_indices[0]], centres[loaded_indices[-1]]
             margin = MARGIN * (high - low)
-            limit(low - margin, high + margin)
+            set_limits(low - margin, high + margin)
 
 
-def _label(ax: Axes, surface: Surface, colours: Any, label: str, extend: str | None = None) -> None:
+def _label_map(ax: Axes, surface: Surface, colours: Any, label: str, extend: str | None = None) -> None:
     """Label the axes and the colour bar of a mesh or of filled contours."""
     bar = ax.figure.colorbar(colours, ax=ax, label=label, extend=extend)
-    label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"), bar.ax)
+    label_axes(ax, surface.unit.axis_label("x"), surface.unit.axis_label("y"), bar.ax)
 
 
 def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool = False) -> Axes:
@@ -133,8 +133,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     max_value = bound / stress if bound < np.inf else None
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
-    _crop(ax, surface)
-    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), None if max_value is None else "max")
+    _crop_axes(ax, surface)
+    _label_map(ax, surface, mesh, surface.unit.stress_label("pressure"), None if max_value is None else "max")
     return ax
 
 
@@ -184,7 +184,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     rows, columns = _arrow_cells(surface, arrows)
     traction = [surface.values(f"traction_{axis}")[rows, columns] / surface.unit.stress for axis in "xy"]
     max_traction = float(np.hypot(*traction).max(initial=0.0))
-    _crop(ax, surface)
+    _crop_axes(ax, surface)
     if max_traction > 0:
         scale = max_traction * arrows / ARROW_LENGTH
         vectors = ax.quiver(
@@ -194,7 +194,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
         ax.quiverkey(vectors, 0.86, 1.06, max_traction, label, labelpos="W", coordinates="axes")
     handles = [Patch(facecolor=STICK_COLOR, label="stick"), Patch(facecolor=SLIP_COLOR, label="slip")]
     ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
-    label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"))
+    label_axes(ax, surface.unit.axis_label("x"), surface.unit.axis_label("y"))
     return ax
 
 
@@ -251,10 +251,10 @@ def plot_traction_map(
         factor, unit = unit_for(max_traction, str(surface.case["slip_y"].attrs.get("units", "1")))
         label = f"slip ({unit})" if unit else "slip per distance rolled"
     mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.in_contact), cmap=COLORS, vmin=0.0)
-    stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.in_contact), 0.5, **STICK_BORDER)
-    _draw_contact_border(ax, surface, mesh, stick)
-    _crop(ax, surface)
-    _label(ax, surface, mesh, label)
+    border = _draw_border(ax, surface, _extend(surface.values("stick"), surface.in_contact), 0.5, **STICK_BORDER)
+    _draw_contact_border(ax, surface, mesh, border)
+    _crop_axes(ax, surface)
+    _label_map(ax, surface, mesh, label)
     return ax
 
 
@@ -290,17 +290,17 @@ def plot_temperature_map(
     >>> plot_temperature_map(hot.assign(hertz_max_pressure=1.0)).get_ylabel()
     'position along rolling, $y/a$'
     """
-    checks.known_name("surface", surface, SURFACES)
-    name = SURFACES[surface]
-    field = Surface(dataset, name, "frictional_heat", si=si, load="frictional_heat")
+    checks.known_name("surface", surface, TEMPERATURE_NAMES)
+    name = TEMPERATURE_NAMES[surface]
+    face = Surface(dataset, name, "frictional_heat", si=si, load="frictional_heat")
     ax = new_axes(ax)
-    rise = field.values(name)
-    mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
-    _draw_border(ax, field, field.pressure, 1e-3 * float(field.pressure.max()), colors="white", linewidths=0.8)
-    # Of equal maxima at both ends, the one nearer to end I.
+    rise = face.values(name)
+    mesh = _draw_mesh(ax, face, rise, cmap=HEAT_COLORS)
+    _draw_border(ax, face, face.pressure, 1e-3 * float(face.pressure.max()), colors="white", linewidths=0.8)
+    # Of equal maxima at both ends the cross marks the maximum nearer to end I.
     row, column = divmod(int((rise >= (1 - EQUAL_MAXIMA) * rise.max()).argmax()), rise.shape[1])
-    ax.plot(field.x[column], field.y[row], "+", color="black", markersize=9)
-    _label(ax, field, mesh, f"{variable_of(name, field.case[name].attrs).long_name} (K)")
+    ax.plot(face.x[column], face.y[row], "+", color="black", markersize=9)
+    _label_map(ax, face, mesh, f"{variable_of(name, face.case[name].attrs).long_name} (K)")
     return ax
 
 
@@ -345,5 +345,5 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
     half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
     ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))
-    _label(ax, surface, contours, "film thickness, $h$ (µm)")
+    _label_map(ax, surface, contours, "film thickness, $h$ (µm)")
     return ax

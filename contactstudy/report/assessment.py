@@ -97,83 +97,83 @@ def assess_case(case: xr.Dataset, table: Summary) -> Assessment:
         reason = f"the case is {status}" + (f": {message}" if message else "")
         return Assessment((Criterion("Is there a result?", NO, reason),))
     answers = {
-        "Did the iteration converge?": _converged(case),
-        "Does the pressure carry the load?": _load(case),
-        "Do gap and pressure exclude each other?": _contact_conditions(case),
-        "Do stick and slip follow Coulomb's law?": _friction(case),
-        "Are the free ends free?": _free_ends(case),
-        "Are the cells fine enough?": _cells(case),
+        "Did the iteration converge?": _assess_convergence(case),
+        "Does the pressure carry the load?": _assess_load(case),
+        "Do gap and pressure exclude each other?": _assess_contact(case),
+        "Do stick and slip follow Coulomb's law?": _assess_friction(case),
+        "Are the free ends free?": _assess_free_ends(case),
+        "Are the cells fine enough?": _assess_cells(case),
     }
     criteria = [Criterion(question, *answer) for question, answer in answers.items() if answer is not None]
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
-    for entry in tables_within(profile):
-        if entry["kind"] == "Measured":
-            criteria.append(Criterion("Is the measured profile filtered?", *_measured_profile(entry)))
+    for profile_table in tables_within(profile):
+        if profile_table["kind"] == "Measured":
+            criteria.append(Criterion("Is the measured profile filtered?", *_assess_profile(profile_table)))
     if "peak_von_mises" in table:
-        criteria.append(Criterion("Is the largest stress known?", *_peak_stress(case, table["peak_von_mises"])))
+        criteria.append(Criterion("Is the largest stress known?", *_assess_peak_stress(case, table["peak_von_mises"])))
     warnings = attribute(case, RUN_ATTRIBUTE).get("warnings", [])
     criteria += [Criterion("Was there a warning?", CAUTION, str(text)) for text in warnings]
     return Assessment(tuple(criteria))
 
 
-def _converged(case: xr.Dataset) -> Answer:
+def _assess_convergence(case: xr.Dataset) -> Answer:
     """Whether the iteration met its tolerance."""
     if "converged" not in case:
-        return _unknown("converged")
-    steps = _size(case, "iterations")
-    count = f" in {steps:.0f} applications of the operator" if np.isfinite(steps) else ""
+        return _answer_unknown("converged")
+    steps = _magnitude(case, "iterations")
+    step_text = f" in {steps:.0f} applications of the operator" if np.isfinite(steps) else ""
     if bool(case["converged"]):
-        return YES, f"it reached its tolerance{count}"
-    return NO, f"it stopped before its tolerance{count}"
+        return YES, f"the iteration reached its tolerance{step_text}"
+    return NO, f"the iteration stopped before its tolerance{step_text}"
 
 
-def _load(case: xr.Dataset) -> Answer:
+def _assess_load(case: xr.Dataset) -> Answer:
     """Whether the pressure is in equilibrium with the load."""
-    error, offset = _size(case, "load_error"), _size(case, "load_position_error")
+    error, position_error = _magnitude(case, "load_error"), _magnitude(case, "load_position_error")
     if np.isnan(error):
-        return _unknown("load_error")
-    position = f", its position to {_digit(offset)} of the length" if offset > 0 else ""
-    is_balanced = error <= LOAD_TOLERANCE and not offset > VIOLATION_TOLERANCE
-    return YES if is_balanced else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
+        return _answer_unknown("load_error")
+    position = f", its position to {_format_digit(position_error)} of the length" if position_error > 0 else ""
+    is_balanced = error <= LOAD_TOLERANCE and not position_error > VIOLATION_TOLERANCE
+    return YES if is_balanced else NO, f"the resultant equals the load to {_format_digit(error)} of the load{position}"
 
 
-def _contact_conditions(case: xr.Dataset) -> Answer:
+def _assess_contact(case: xr.Dataset) -> Answer:
     """Whether gap and pressure are complementary."""
-    overlap, pressure = _size(case, "penetration_error"), _size(case, "open_pressure_error")
-    if np.isnan(overlap):
-        return _unknown("penetration_error")
-    is_fulfilled = max(overlap, np.nan_to_num(pressure)) <= VIOLATION_TOLERANCE
+    penetration, open_pressure = _magnitude(case, "penetration_error"), _magnitude(case, "open_pressure_error")
+    if np.isnan(penetration):
+        return _answer_unknown("penetration_error")
+    is_fulfilled = max(penetration, np.nan_to_num(open_pressure)) <= VIOLATION_TOLERANCE
     reason = (
-        f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
-        f"{_digit(pressure)} of the peak"
+        f"gap or overlap under pressure is {_format_digit(penetration)} of the displacement, pressure over a gap "
+        f"{_format_digit(open_pressure)} of the peak"
     )
     return YES if is_fulfilled else CAUTION, reason
 
 
-def _friction(case: xr.Dataset) -> Answer | None:
+def _assess_friction(case: xr.Dataset) -> Answer | None:
     """Whether stick and slip obey Coulomb's law; None without their errors."""
     if "bound_error" not in case:
         return None
-    errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
-    reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
+    errors = {name: _magnitude(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
+    reason = ", ".join(f"{name.replace('_', ' ')} {_format_digit(value)}" for name, value in errors.items())
     return CAUTION if any(value > RESIDUAL_TOLERANCE for value in errors.values()) else YES, reason
 
 
-def _free_ends(case: xr.Dataset) -> Answer:
+def _assess_free_ends(case: xr.Dataset) -> Answer:
     """Whether the traction on the free ends vanishes."""
-    residual = _size(case, "end_traction_residual")
+    residual = _magnitude(case, "end_traction_residual")
     body = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("body", {})
     if body.get("kind") == "HalfSpace" or (residual == 0 and not body):
         return YES, "the body has no free end, or the traction on the free end is zero"
     if np.isnan(residual):
-        return _unknown("end_traction_residual")
-    reason = f"the traction on the free end is {_digit(residual)} of the peak pressure"
+        return _answer_unknown("end_traction_residual")
+    reason = f"the traction on the free end is {_format_digit(residual)} of the peak pressure"
     if body.get("model", "exact") != "exact":
         return CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only"
     return YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason
 
 
-def _cells(case: xr.Dataset) -> Answer:
+def _assess_cells(case: xr.Dataset) -> Answer:
     """Whether the cells resolve the peak pressure."""
     peak, error = (float(case.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     if np.isinf(peak):
@@ -183,15 +183,15 @@ def _cells(case: xr.Dataset) -> Answer:
         return CAUTION if "pressure" in case else UNKNOWN, reason
     if np.isinf(error):
         return CAUTION, case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells")
-    relative = error / peak if peak else 0.0
-    if relative > PEAK_TOLERANCE:
-        return CAUTION, f"the error of the peak pressure is {relative:.1%}"
-    return YES, f"the peak pressure has converged to {relative:.1%}"
+    relative_error = error / peak if peak else 0.0
+    if relative_error > PEAK_TOLERANCE:
+        return CAUTION, f"the error of the peak pressure is {relative_error:.1%}"
+    return YES, f"the peak pressure has converged to {relative_error:.1%}"
 
 
 def _singular_edge(case: xr.Dataset) -> str:
     """Name of the edge with a singular pressure, and the argument for its radius."""
-    if np.isfinite(_size(case, "corner_x")):
+    if np.isfinite(_magnitude(case, "corner_x")):
         return f"the corner x = {format_quantity(float(case['corner_x']), 'm')}; a Chamfer may have a blend_radius"
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     start, length = inputs.get("end_distance"), inputs.get("body", {}).get("length", np.inf)
@@ -204,38 +204,38 @@ def _singular_edge(case: xr.Dataset) -> str:
     return "the roller's sharp end inside the face; Roller(profile=...) takes a radius or a chamfer"
 
 
-def _measured_profile(profile: Mapping[str, Any]) -> Answer:
+def _assess_profile(profile: Mapping[str, Any]) -> Answer:
     """Whether a measured profile is filtered: the cells would resolve its noise like a shape."""
     cutoff = profile.get("cutoff")
     if cutoff is None:
         return CAUTION, (
             "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
-            "a cutoff on which the peak does not depend"
+            "a cutoff such that the peak hardly depends on it"
         )
-    return YES, f"the cut-off is {format_quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
+    return YES, f"the cut-off is {format_quantity(cutoff, 'm')}; a second cut-off shows its influence on the peak"
 
 
-def _peak_stress(case: xr.Dataset, row: Quantity) -> Answer:
+def _assess_peak_stress(case: xr.Dataset, row: Quantity) -> Answer:
     """Whether the largest von Mises stress has an error."""
     if "peak_von_mises_error" not in case and "von_mises" in case:
-        flat = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
-        if flat:
-            return CAUTION, f"the stresses have one position along {' and '.join(flat)} only"
+        single_axes = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
+        if single_axes:
+            return CAUTION, f"the stresses have one position along {' and '.join(single_axes)} only"
     if not np.isfinite(row.error) or np.isinf(row.value):
         return CAUTION, row.remark or UNKNOWN_ERROR
     return YES, row.text
 
 
-def _unknown(name: str) -> Answer:
+def _answer_unknown(name: str) -> Answer:
     """Answer to a question on a number that the result lacks."""
     return UNKNOWN, f"the result has no {name}"
 
 
-def _size(case: xr.Dataset, name: str) -> float:
+def _magnitude(case: xr.Dataset, name: str) -> float:
     """Absolute value of a scalar; NaN if the scalar is missing."""
     return abs(float(case.get(name, np.nan)))
 
 
-def _digit(value: float) -> str:
+def _format_digit(value: float) -> str:
     """Text of a number with one digit, such as '2e-07'."""
     return f"{value:.0e}" if value else "0"

@@ -68,7 +68,7 @@ def encode_figure(figure: Figure) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
 
 
-def _new_figure(height: float = HEIGHT) -> Figure:
+def _create_figure(height: float = HEIGHT) -> Figure:
     """Return a figure without a window."""
     from matplotlib.figure import Figure
 
@@ -78,27 +78,27 @@ def _new_figure(height: float = HEIGHT) -> Figure:
 def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     """Return every figure that a result of one case and its inputs allow."""
     # Each function draws into a figure and returns the figure's caption.
-    draw: list[Callable[[Figure, xr.Dataset], str]] = []
+    drawing_functions: list[Callable[[Figure, xr.Dataset], str]] = []
     if "pressure" in result and bool((result["pressure"] > 0).any()):
-        top = "Pressure on the top of the body. The two axes have different scales."
-        draw += [_draw_axial_pressure, partial(_draw_map, plot_pressure_map, top)]
+        pressure_caption = "Pressure on the top of the body. The two axes have different scales."
+        drawing_functions += [_draw_axial_pressure, partial(_draw_map, plot_pressure_map, pressure_caption)]
         if {"stick", "traction_x", "slip_x"} <= set(result.data_vars):
-            draw += [_draw_traction_map, _draw_slip_map]
+            drawing_functions += [_draw_traction_map, _draw_slip_map]
     if "film_thickness" in result:
-        film = "Film thickness. Cross: least film. The two axes have different scales."
-        draw += [_draw_film_lines, partial(_draw_map, plot_film_map, film)]
+        film_caption = "Film thickness. Cross: least film. The two axes have different scales."
+        drawing_functions += [_draw_film_lines, partial(_draw_map, plot_film_map, film_caption)]
     if case is not None:
         roller = case.roller
         if check_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
-            draw.append(partial(_draw_profile, roller))
+            drawing_functions.append(partial(_draw_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
         x = float(largest_sample(result, "von_mises")["largest_von_mises_x"])
-        section = f"across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}"
-        draw += [partial(_draw_plane, "in the plane y = 0, along the roller", {"y": 0.0})]
-        draw += [partial(_draw_plane, section, {"x": x}), _draw_section_maxima]
+        section_text = f"across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}"
+        drawing_functions += [partial(_draw_plane, "in the plane y = 0, along the roller", {"y": 0.0})]
+        drawing_functions += [partial(_draw_plane, section_text, {"x": x}), _draw_section_maxima]
     pictures = []
-    for function in draw:
-        figure = _new_figure()
+    for function in drawing_functions:
+        figure = _create_figure()
         with contextlib.suppress(ContactStudyError):  # fewer positions than the plane needs
             caption = function(figure, result)
             pictures.append(Picture(encode_figure(figure), caption))
@@ -109,7 +109,7 @@ def _draw_axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     """Pressure along the axis, and near the end of larger pressure."""
     x = positions(result["pressure"], "x").values
     half_width = float(result.get("hertz_half_width", np.inf))
-    panel = END_PANEL * half_width
+    length = END_PANEL * half_width
     has_end_panel = np.ptp(x) > LONG_CONTACT * half_width
     axes = figure.subplots(1, 2 if has_end_panel else 1, squeeze=False)[0]
     for ax in axes:
@@ -120,10 +120,10 @@ def _draw_axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     caption = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz line contact."
     if has_end_panel:
         line_pressure = axial_pressure(result).values
-        loaded = x[line_pressure > 0]
-        at_end_1 = line_pressure[x <= loaded[0] + panel].max() >= line_pressure[x >= loaded[-1] - panel].max()
-        end, inwards = (loaded[0], panel) if at_end_1 else (loaded[-1], -panel)
-        axes[1].set_xlim(*sorted((1e3 * (end - 0.1 * inwards), 1e3 * (end + inwards))))
+        loaded_x = x[line_pressure > 0]
+        at_end_1 = line_pressure[x <= loaded_x[0] + length].max() >= line_pressure[x >= loaded_x[-1] - length].max()
+        end, panel_offset = (loaded_x[0], length) if at_end_1 else (loaded_x[-1], -length)
+        axes[1].set_xlim(*sorted((1e3 * (end - 0.1 * panel_offset), 1e3 * (end + panel_offset))))
         axes[1].set_ylabel("")
         axes[1].set_title(f"near end {'I' if at_end_1 else 'II'}", fontsize="medium")
     if np.isinf(float(result.get("peak_pressure", 0.0))):
@@ -213,7 +213,7 @@ class SideView(NamedTuple):
     limits: tuple[float, float]
     height: float  # of the roller in the drawing
     magnification: float  # factor on the drop
-    clipped: bool  # whether the magnified drop is deeper than the drawing
+    is_clipped: bool  # whether the magnified drop is deeper than the drawing
 
 
 def side_geometry(case: Case) -> SideView:
@@ -229,22 +229,22 @@ def side_geometry(case: Case) -> SideView:
     x_roller = np.linspace(-0.5, 0.5, 241) * roller.length
     drop = check_drop(roller.profile, x_roller, roller.length)
     is_inner = (np.abs(x_roller) <= 0.45 * roller.length) & np.isfinite(drop)
-    magnification, max_depth = _magnification(float(drop[is_inner].max(initial=0.0)), height), 0.45 * height
+    magnification, max_depth = _choose_magnification(float(drop[is_inner].max(initial=0.0)), height), 0.45 * height
     generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, max_depth), max_depth)
     x = x_roller + ends[0] + 0.5 * roller.length
-    clipped = bool((drop * magnification > max_depth).any())
+    is_clipped = bool((drop * magnification > max_depth).any())
     return SideView(
-        x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, clipped=clipped
+        x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, is_clipped=is_clipped
     )
 
 
-def _magnification(crown: float, height: float) -> float:
+def _choose_magnification(crown: float, height: float) -> float:
     """Factor, 1, 2 or 5 times a power of ten, that magnifies a crown to at most 0.16 of the height; 1 if visible."""
     if crown <= 0 or crown >= 0.02 * height:
         return 1.0
-    limit = 0.16 * height / crown
-    power = 10.0 ** math.floor(math.log10(limit))
-    return float(next(factor for factor in (5 * power, 2 * power, power) if factor <= limit * (1 + 1e-9)))
+    max_factor = 0.16 * height / crown
+    power = 10.0 ** math.floor(math.log10(max_factor))
+    return float(next(factor for factor in (5 * power, 2 * power, power) if factor <= max_factor * (1 + 1e-9)))
 
 
 def side_view(case: Case) -> Picture:
@@ -252,7 +252,7 @@ def side_view(case: Case) -> Picture:
     view = side_geometry(case)
     width = view.limits[1] - view.limits[0]
     depth = 0.13 * width
-    figure = _new_figure(WIDTH * (view.height + 2.2 * depth) / width + 0.6)
+    figure = _create_figure(WIDTH * (view.height + 2.2 * depth) / width + 0.6)
     ax = figure.subplots()
     _draw_body(ax, view, depth)
     _draw_roller(ax, view, case.roller.radius)
@@ -269,7 +269,7 @@ def side_view(case: Case) -> Picture:
             ax.text(x, -1.3 * depth, text, ha=alignment, va="top")
     ax.set_aspect("equal")
     ax.set_axis_off()
-    return Picture(encode_figure(figure), _side_caption(case, view))
+    return Picture(encode_figure(figure), _write_side_caption(case, view))
 
 
 def _draw_body(ax: Axes, view: SideView, depth: float) -> None:
@@ -303,14 +303,14 @@ def _draw_dimension(ax: Axes, ends: tuple[float, float], z: float, text: str) ->
     ax.text(0.5 * (ends[0] + ends[1]), z, text, ha="center", va="center", bbox=box)
 
 
-def _side_caption(case: Case, view: SideView) -> str:
+def _write_side_caption(case: Case, view: SideView) -> str:
     """Caption: scale, magnification, cut, cone and tilt."""
     roller = case.roller
-    crown = "so is the profile"
+    profile_text = "the profile is to scale"
     if view.magnification > 1:
-        crown = f"the drop of the profile is magnified {view.magnification:g} times"
-        crown += ", and clipped at the ends" if view.clipped else ""
-    caption = f"Side view, to scale in both directions: lower half of the roller on the body; {crown}."
+        profile_text = f"the drop of the profile is magnified {view.magnification:g} times"
+        profile_text += ", and clipped at the ends" if view.is_clipped else ""
+    caption = f"Side view, to scale in both directions: lower half of the roller on the body; {profile_text}."
     if view.height < roller.radius:
         caption += " The roller is cut below its axis."
     x_roller = view.x - 0.5 * sum(view.roller)

@@ -34,13 +34,13 @@ from contactstudy.versions import PACKAGES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CELLS = {  # Description of the cells by the setting of `solve`
+CELL_DESCRIPTIONS = {  # Description of the cells by the setting of `solve`
     "refined": "columns refined along the axis until the accuracy was reached",
     "chosen": "uniform cells, chosen by the package",
     "given": "given by the user",
 }
-ROUGH = "the surfaces are rough; the report does not contain their heights"
-VERSIONED = ("contactstudy", "commit", "python", *PACKAGES)  # Entries of a run with a version
+ROUGHNESS_NOTE = "the surfaces are rough; the report does not contain their heights"
+VERSION_ENTRIES = ("contactstudy", "commit", "python", *PACKAGES)  # Entries of a run with a version
 HEADINGS = {  # Columns of the table and their headings
     "peak_pressure": "largest pressure",
     "end_pressure_first": "at end I",
@@ -74,7 +74,7 @@ CAPTIONS = {  # Captions of figures by name
 
 FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
-RATINGS_WORST_FIRST = (NO, CAUTION, UNKNOWN, YES)
+ANSWER_ORDER = (NO, CAUTION, UNKNOWN, YES)
 
 
 def html(
@@ -119,7 +119,7 @@ def html(
         study = attribute(source, RUN_ATTRIBUTE).get("study", "")
         title = title or (f"Study {study}, case {path.stem}" if study else path.stem)
     if selection:
-        raise InvalidInputError("selection", dict(selection), "left out: the report of one case shows that case")
+        raise InvalidInputError("selection", dict(selection), "absent for the report of a single case")
     result = single_case(source)
     case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
     context = {
@@ -203,7 +203,7 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
     """
     run = attribute(dataset, RUN_ATTRIBUTE)
     settings = attribute(dataset, INPUTS_ATTRIBUTE).get("settings", {})
-    versions = ", ".join(f"{name} {run[name]}" for name in VERSIONED if name in run)
+    versions = ", ".join(f"{name} {run[name]}" for name in VERSION_ENTRIES if name in run)
     cells, stages = str(settings.get("cells", "")), run.get("stages", {}).items()
     times = [f"{stage} {seconds:.2f} s" for stage, seconds in stages if isinstance(seconds, Real)]
     total = f"{run['seconds']:.2f} s" if "seconds" in run else ""
@@ -211,10 +211,10 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
         "solved": f"{run['time'][:16].replace('T', ' ')} UTC" if "time" in run else "",
         "study": str(run.get("study") or ""),
         "versions": versions or str(dataset.attrs.get("source", "not known")),
-        "cells": CELLS.get(cells, cells),
+        "cells": CELL_DESCRIPTIONS.get(cells, cells),
         "accuracy": f"{settings['accuracy']:g} of the peak pressure" if "accuracy" in settings else "",
         "tolerance of the iteration": f"{settings['tolerance']:g}" if "tolerance" in settings else "",
-        "roughness": ROUGH if settings.get("rough") else "",
+        "roughness": ROUGHNESS_NOTE if settings.get("rough") else "",
         "cells along x and y": " x ".join(map(str, dataset["pressure"].shape)) if "pressure" in dataset else "",
         "time": f"{', '.join(times)}; {total} in all" if times and total else total,
     }
@@ -253,37 +253,37 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     plan = study.plan()
     states = folder.states(plan)
     records = [states.record(index) for index in range(len(plan))]
-    swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
+    swept_names = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
     rows = [
-        _row(f"case-{number}", str(status), reason, record, _swept_values(plan, case, swept))
+        _create_row(f"case-{number}", str(status), reason, record, _swept_values(plan, case, swept_names))
         for number, (case, status, reason, record) in enumerate(
             zip(plan, states.status, states.reasons, records, strict=True), 1
         )
     ]
     names = [name for name in HEADINGS if _has_number(rows, name)]
-    sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
+    sizes = ", ".join(f"{_heading_of(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     return {
         "title": f"Study {study.name}",
         "description": study.description,
         "shape": f"{len(plan)} cases ({sizes})",
         "counts": Counter(row.status for row in rows),
-        "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
+        "base": [(_meaning_of(name), format_value(name, value)) for name, value in study.base.items()],
         "swept": [
             (
-                _meaning(name),
+                _meaning_of(name),
                 format_list(list(dict.fromkeys(row.swept_values[column] for row in rows if row.swept_values[column]))),
             )
-            for column, name in enumerate(swept)
+            for column, name in enumerate(swept_names)
         ],
-        "headings": [_heading(name) for name in swept],
+        "headings": [_heading_of(name) for name in swept_names],
         "number_headings": {name: HEADINGS[name] for name in names},
         "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
         "reasons": _group_rows((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
         "answers": _count_answers(rows),
-        "verdict": _verdict(rows),
-        "pictures": _pictures(path, selection),
-        "provenance": _provenance([attribute(record, RUN_ATTRIBUTE) for record in records if record]),
+        "verdict": _summarise_answers(rows),
+        "pictures": _draw_pictures(path, selection),
+        "provenance": _summarise_runs([attribute(record, RUN_ATTRIBUTE) for record in records if record]),
     }
 
 
@@ -298,40 +298,40 @@ def figures_of_folder(
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 
-    def last_value(dim: str) -> str:
+    def find_last_value(dim: str) -> str:
         value = study.indexes[dim][-1]
         return value if isinstance(value, str) else f"{float(value):.10g}"
 
     return {
-        name: (figure, {dim: last_value(dim) for dim in fixed_values})
+        name: (figure, {dim: find_last_value(dim) for dim in fixed_values})
         for name, (figure, fixed_values) in figures_with_selections(study, selection or {}, load).items()
     }
 
 
-def _meaning(name: str) -> str:
+def _meaning_of(name: str) -> str:
     """Meaning of a parameter."""
     return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
 
 
-def _heading(name: str) -> str:
+def _heading_of(name: str) -> str:
     """Heading of a parameter; zipped parameters have the name that the study gives them."""
     return PARAMETERS[name].attrs["long_name"] if name in PARAMETERS else name.replace("_", " ")
 
 
-def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
+def _swept_values(plan: Plan, case: PlannedCase, swept_names: list[str]) -> list[str]:
     """Values of the swept parameters of a case, with the study's names."""
     parameters = with_defaults(case.parameters)
     texts = []
-    for name in swept:
+    for name in swept_names:
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
         if isinstance(parameters.get(name), dict) and value == label(parameters[name]):
-            value = parameters[name]  # a table without a name: its values
+            value = parameters[name]  # the text of an unnamed table lists its values
         texts.append("" if value is None else format_value(name, value))
     return texts
 
 
-def _row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values: list[str]) -> Row:
+def _create_row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values: list[str]) -> Row:
     """Row of a case, with all numbers of the table."""
     if not record:
         return Row(anchor, swept_values, {}, status, note=reason, answer="", reason="")
@@ -340,7 +340,7 @@ def _row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values
     return Row(
         anchor,
         swept_values,
-        {name: _number(table, name) for name in HEADINGS},
+        {name: _format_number(table, name) for name in HEADINGS},
         status,
         note=assessment.verdict if assessment.overall == NO else reason,
         answer=assessment.overall,
@@ -348,12 +348,12 @@ def _row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values
     )
 
 
-def _number(table: Summary, name: str) -> str:
+def _format_number(table: Summary, name: str) -> str:
     """Text of a number with its error; empty for a number of a singular end at a regular end."""
-    side = name.rpartition("_")[2]
+    end = name.rpartition("_")[2]
     if name.startswith("peak_von_mises") and "peak_von_mises" in table and np.isinf(table["peak_von_mises"].value):
-        return SINGULAR  # neither has it a position
-    if name not in table or (name in SINGULAR_NUMBERS and f"end_intensity_{side}" not in table):
+        return SINGULAR  # omit the position
+    if name not in table or (name in SINGULAR_NUMBERS and f"end_intensity_{end}" not in table):
         return ""
     number = table[name]
     if name.startswith("end_pressure") and number.value == 0:
@@ -366,8 +366,8 @@ def _number(table: Summary, name: str) -> str:
 
 def _has_number(rows: list[Row], name: str) -> bool:
     """Whether a column has a number; at a singular end the intensity replaces the pressure."""
-    empty = {"", NOT_LOADED, SINGULAR} if name.startswith("end_") else {"", NOT_LOADED}
-    return any(row.numbers.get(name, "") not in empty for row in rows)
+    empty_texts = {"", NOT_LOADED, SINGULAR} if name.startswith("end_") else {"", NOT_LOADED}
+    return any(row.numbers.get(name, "") not in empty_texts for row in rows)
 
 
 def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
@@ -375,35 +375,35 @@ def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> l
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault(key(row), []).append(row)
-    return [(*texts, members) for texts, members in groups.items()]
+    return [(*texts, group) for texts, group in groups.items()]
 
 
 def _count_answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     """Answers and reasons with the rows of the cases they apply to, worst answers first."""
     # The percentage in a reason differs from case to case: omit it, to group equal reasons.
     groups = _group_rows((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
-    groups.sort(key=lambda group: RATINGS_WORST_FIRST.index(group[0]))
+    groups.sort(key=lambda group: ANSWER_ORDER.index(group[0]))
     answers = []
     for answer, reason, cases in groups:
-        sizes = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
-        if sizes:
-            reason += f" {sizes[-1]:.1f}%"
-            reason += f" in the worst case, {sizes[0]:.1f}% in the best" if sizes[0] < sizes[-1] else ""
+        percents = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
+        if percents:
+            reason += f" {percents[-1]:.1f}%"
+            reason += f" in the worst case, {percents[0]:.1f}% in the best" if percents[0] < percents[-1] else ""
         answers.append((answer, reason, cases))
     return answers
 
 
-def _verdict(rows: list[Row]) -> tuple[str, str]:
+def _summarise_answers(rows: list[Row]) -> tuple[str, str]:
     """Worst answer of all cases, and the number of cases with each answer; an unsolved case counts as "with care"."""
-    count = Counter(row.answer for row in rows if row.answer)
-    worst = next((answer for answer in RATINGS_WORST_FIRST if answer in count), UNKNOWN)
-    if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
-        worst = CAUTION
+    counts = Counter(row.answer for row in rows if row.answer)
+    worst_answer = next((answer for answer in ANSWER_ORDER if answer in counts), UNKNOWN)
+    if worst_answer in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
+        worst_answer = CAUTION
     phrases = {NO: "not to be relied on", CAUTION: "real with care", UNKNOWN: "not known to be real", YES: "real"}
-    return worst, ", ".join(f"{count[answer]} {phrases[answer]}" for answer in RATINGS_WORST_FIRST if count[answer])
+    return worst_answer, ", ".join(f"{counts[answer]} {phrases[answer]}" for answer in ANSWER_ORDER if counts[answer])
 
 
-def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
+def _draw_pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     """Figures of the study with captions."""
     from matplotlib import pyplot
 
@@ -413,21 +413,21 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
         for parameter, value in list(fixed_values.items())[:1]:
             option = f"{parameter}={value}"
             option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
-            headings = " and ".join(map(_heading, fixed_values))
-            caption += f" Of {headings} the figure has the value in its title. Another value: "
+            headings = " and ".join(map(_heading_of, fixed_values))
+            caption += f" The figure's title contains the value of {headings}. Another value: "
             caption += f"contactstudy report FOLDER --select {option}"
         pictures.append(Picture(encode_figure(figure), caption, round(PIXELS_PER_INCH * figure.get_figwidth())))
         pyplot.close(figure)
     return pictures
 
 
-def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
+def _summarise_runs(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
     """Dates, versions and solution time of the cases."""
     if not runs:
         return []
     dates = sorted(str(run["time"])[:10] for run in runs if "time" in run)
     rows = [("solved", dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}")] if dates else []
-    for name in VERSIONED:
+    for name in VERSION_ENTRIES:
         versions = sorted({str(run[name]) for run in runs if name in run})
         if versions:
             rows.append((name, ", ".join(versions)))

@@ -16,7 +16,7 @@ Source = tuple[str, str]
 LINE_CONTACT = ("line contact", "K. L. Johnson, Contact Mechanics, Cambridge University Press (1985)")
 FREE_ENDS = (
     ("free ends", "M. Hetenyi, J. Appl. Mech. 37 (1970), the alternating scheme of the quarter space"),
-    ("free ends", "Z. M. Zhang, W. Wang, P. L. Wong, Int. J. Solids Struct. 50 (2013) 976, solved at once"),
+    ("free ends", "Z. M. Zhang, W. Wang, P. L. Wong, Int. J. Solids Struct. 50 (2013) 976, both faces at once"),
 )
 MIRROR_FACTOR = ("mirror factor", "R. Guilbault, J. Tribology 133 (2011) 031402")
 CONTACT = (
@@ -61,8 +61,7 @@ def citations(dataset: xr.Dataset) -> Citations:
     Returns
     -------
     Citations
-        This package first. For a study, and for a case selected from it, the sources of all cases of the study; without
-        the inputs, the sources that the variables imply.
+        This package first. For a study or one of its cases the sources of all cases; without inputs, of the variables.
 
     Examples
     --------
@@ -104,16 +103,16 @@ def _models_of_case(case: dict[str, Any]) -> tuple[set[str], Any]:
 def _models_of_study(study: dict[str, Any]) -> tuple[set[str], Any]:
     """Models of the free ends, and the profiles, of all cases of a study."""
 
-    def values(name: str, default: str) -> list[Any]:
+    def collect_values(name: str, default: str) -> list[Any]:
         scalars = [table[name] for table in (study.get("base", {}), *study.get("cases", [])) if name in table]
         lists = [table.get(name, []) for table in (study.get("sweep", {}), *study.get("zip", []))]
         return [*scalars, *(value for entries in lists for value in entries)] or [default]
 
-    has_ends = any(body != "half-space" for body in values("body", "finite-length"))
-    models = {str(model) for model in values("model", "exact")} if has_ends else set()
-    if "finite-length" in values("roller_body", "rigid"):
+    has_ends = any(body != "half-space" for body in collect_values("body", "finite-length"))
+    models = {str(model) for model in collect_values("model", "exact")} if has_ends else set()
+    if "finite-length" in collect_values("roller_body", "rigid"):
         models.add("exact")
-    profiles = values("profile", "cylinder")
+    profiles = collect_values("profile", "cylinder")
     return models, [{"kind": profile} if isinstance(profile, str) else profile for profile in profiles]
 
 

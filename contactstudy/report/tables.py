@@ -28,14 +28,14 @@ SINGULAR = "singular: unbounded towards a sharp end"
 CELL_MEAN = f"mean over the cell of largest pressure, {UNKNOWN_ERROR}"
 OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
-HERTZ = {
+HERTZ_MEANINGS = {
     "normal_load": "normal load",
     "hertz_max_pressure": "Hertz pressure p0",
     "hertz_half_width": "Hertz half-width a",
 }
-FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
-CORNER = ("corner_x", "corner_slope", "corner_intensity", "corner_distance")  # rows unless NaN
-SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
+FILM_NAMES = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
+CORNER_NAMES = ("corner_x", "corner_slope", "corner_intensity", "corner_distance")  # rows unless NaN
+SCALAR_MEANINGS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
     "tilt": "tilt",
     "reference_depth": "reference depth of approach and tilt in the body",
@@ -52,8 +52,8 @@ SCALARS = {  # Scalars that have a row if present and not zero, with the row's t
     "friction_work": "frictional work",
 }
 
-SOLVED = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
-"""Scalars among `SCALARS` that follow from the solution unless the case prescribes them."""
+OUTPUTS = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
+"""Scalars among `SCALAR_MEANINGS` that follow from the solution unless the case prescribes them."""
 
 BALANCED = "load_position"  # Scalar whose ``_error`` is the residual of a prescribed value, in other units
 
@@ -84,9 +84,9 @@ class Summary:
         return any(row.name == name for row in self.numbers)
 
     def __repr__(self) -> str:
-        width = max((len(row.meaning) for row in self.numbers), default=0)
-        text = max((len(row.text) for row in self.numbers), default=0)
-        rows = ((row.meaning.ljust(width), row.text.ljust(text), row.remark) for row in self.numbers)
+        meaning_width = max((len(row.meaning) for row in self.numbers), default=0)
+        text_width = max((len(row.text) for row in self.numbers), default=0)
+        rows = ((row.meaning.ljust(meaning_width), row.text.ljust(text_width), row.remark) for row in self.numbers)
         return "\n".join("  ".join(row).rstrip() for row in rows)
 
     def _repr_html_(self) -> str:
@@ -126,18 +126,18 @@ def summary(dataset: xr.Dataset) -> Summary:
     Hertz pressure p0  1.5 GPa
     largest pressure   2 GPa    mean over the cell of largest pressure, error not estimated
     """
-    return Summary(tuple(_rows(single_case(dataset))))
+    return Summary(tuple(_create_rows(single_case(dataset))))
 
 
-def _rows(case: xr.Dataset) -> Iterator[Quantity]:
+def _create_rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Rows of a case."""
-    for name, meaning in HERTZ.items():
+    for name, meaning in HERTZ_MEANINGS.items():
         if name in case:
-            yield _row(case, name, meaning, None if f"{name}_error" in case else "")
-    yield from _peak_pressure(case)
+            yield _create_row(case, name, meaning, None if f"{name}_error" in case else "")
+    yield from _peak_pressure_rows(case)
     for suffix, end in ENDS.items():
         if f"end_pressure_{suffix}" in case:
-            yield _row(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
+            yield _create_row(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
         name, exponent = f"end_intensity_{suffix}", float(case.get(f"end_exponent_{suffix}", np.nan))
         if np.isfinite(exponent):
             value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
@@ -146,30 +146,30 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
             remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
             yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark, mark="law")
         if f"end_load_{suffix}" in case:
-            yield _row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
-    for name in (*CORNER, *FILMS):
+            yield _create_row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
+    for name in (*CORNER_NAMES, *FILM_NAMES):
         if not np.isnan(float(case.get(name, np.nan))):
             attributes = case[name].attrs
-            comment = str(attributes.get("comment", "")) if name in CORNER[:3] else None  # exact values
-            yield _row(case, name, variable_of(name, attributes).long_name, comment)
+            comment = str(attributes.get("comment", "")) if name in CORNER_NAMES[:3] else None  # exact values
+            yield _create_row(case, name, variable_of(name, attributes).long_name, comment)
     if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
         case = case.assign(contact_length=contact_edges(case)["contact_length"])
     if "contact_length" in case:
-        yield _row(case, "contact_length", "length of the contact")
-    yield from _peak_stress(case)
-    yield from _edge_tension(case)
-    for name, meaning in SCALARS.items():
+        yield _create_row(case, "contact_length", "length of the contact")
+    yield from _peak_stress_rows(case)
+    yield from _edge_tension_rows(case)
+    for name, meaning in SCALAR_MEANINGS.items():
         if abs(float(case.get(name, np.nan))) > 0:
             # In a study's case a residual above zero shows that the value was prescribed.
             has_rounding_error = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
-            is_given = _is_prescribed(case, name) is not None or has_rounding_error or name not in SOLVED
+            is_given = _prescribed_value(case, name) is not None or has_rounding_error or name not in OUTPUTS
             input_remark = "" if is_given and (name == BALANCED or f"{name}_error" not in case) else None
-            row = _row(case.drop_vars(f"{BALANCED}_error", errors="ignore"), name, meaning, input_remark)
+            row = _create_row(case.drop_vars(f"{BALANCED}_error", errors="ignore"), name, meaning, input_remark)
             yield _mark_rounding(case, row)
-    yield from _slip(case)
+    yield from _slip_rows(case)
 
 
-def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
+def _create_row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
     """Row of a scalar with its error, with the reason for a missing error, or with a remark instead."""
     value, error = float(case[name]), np.nan if remark is not None else float(case.get(f"{name}_error", np.nan))
     units, mark = variable_of(name, case[name].attrs).units, ""
@@ -193,17 +193,17 @@ def _describe_singularity(case: xr.Dataset) -> str:
     return SINGULAR if np.isnan(x) else f"singular: unbounded towards the corner at x = {format_quantity(x, 'm')}"
 
 
-def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
+def _peak_pressure_rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest pressure: refined, or of a cell."""
     if "peak_pressure" not in case and "pressure" in case:
         case = case.assign(peak_pressure=float(case["pressure"].max()))
     if "peak_pressure" in case:
         is_refined = "peak_pressure_error" in case or np.isinf(float(case["peak_pressure"]))
-        row = _row(case, "peak_pressure", "largest pressure")
+        row = _create_row(case, "peak_pressure", "largest pressure")
         yield row if is_refined else row._replace(remark=CELL_MEAN)
 
 
-def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
+def _peak_stress_rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Rows of the largest von Mises stress and its position; unbounded at a singular end."""
     name, meaning = "peak_von_mises", "largest von Mises stress"
     singular = np.isinf(float(case.get("peak_pressure", np.nan)))
@@ -212,32 +212,32 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield _row(case.assign({name: np.inf, f"{name}_error": np.nan}), name, meaning)
+        yield _create_row(case.assign({name: np.inf, f"{name}_error": np.nan}), name, meaning)
         return
-    yield _row(case, name, meaning)
+    yield _create_row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
         if f"{name}_{axis}" in case:
-            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}")
-            end = _nearest_end(case, row.value) if axis == "x" else ""
+            row = _create_row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}")
+            end = _describe_nearest_end(case, row.value) if axis == "x" else ""
             yield row._replace(remark=", ".join(filter(None, (end, row.remark))))
 
 
-def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
+def _edge_tension_rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest tension at the trailing edge of a sliding contact, the stress that opens cracks."""
     name = "peak_edge_tension"
     if name in case:
-        row = _row(case, name, "largest tension at the trailing edge")
+        row = _create_row(case, name, "largest tension at the trailing edge")
         position = ", ".join(f"{axis} = {format_quantity(float(case[f'{name}_{axis}']), 'm')}" for axis in "xy")
         yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
 
 
-def _nearest_end(case: xr.Dataset, x: float) -> str:
+def _describe_nearest_end(case: xr.Dataset, x: float) -> str:
     """Text: distance of a position from the nearest end of the contact; empty if the cells are not known."""
     if "pressure" not in case or not {"x", "y"} <= set(case["pressure"].dims) or not (case["pressure"] > 0).any():
         return ""
-    loaded = case["x"].values[(case["pressure"] > 0).any("y").values]
-    distances = {"end I": abs(x - loaded.min()), "end II": abs(x - loaded.max())}
-    if abs(distances["end I"] - distances["end II"]) < 0.02 * float(np.ptp(loaded)):
+    loaded_x = case["x"].values[(case["pressure"] > 0).any("y").values]
+    distances = {"end I": abs(x - loaded_x.min()), "end II": abs(x - loaded_x.max())}
+    if abs(distances["end I"] - distances["end II"]) < 0.02 * float(np.ptp(loaded_x)):
         return "at mid-length"
     end = min(distances, key=distances.__getitem__)
     return f"{format_quantity(distances[end], 'm')} from {end} of the contact"
@@ -251,16 +251,16 @@ def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
     rounding_limit = TOLERANCE * force * lever_arms.get(row.name, 0.0)
     # Show a value that exceeds its error, since it differs from zero, and a value whose error exceeds the limit.
     is_zero = np.isnan(row.error) or abs(row.value) <= row.error < rounding_limit
-    if abs(row.value) < rounding_limit and is_zero and not _is_prescribed(case, row.name):
+    if abs(row.value) < rounding_limit and is_zero and not _prescribed_value(case, row.name):
         remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
         return row._replace(text=f"0 {row.units}", remark=remark, mark="rounding")
     return row
 
 
-def _slip(case: xr.Dataset) -> Iterator[Quantity]:
+def _slip_rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Rows of stick and slip: sticking part of the contact, largest traction and slip."""
     if "sticking_part" in case:
-        yield _row(case, "sticking_part", "part of the contact that sticks")
+        yield _create_row(case, "sticking_part", "part of the contact that sticks")
     if "stick" not in case:
         return
     for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
@@ -274,8 +274,8 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
             yield row._replace(mark=NOT_ESTIMATED)
 
 
-def _is_prescribed(case: xr.Dataset, name: str) -> Any:
-    """Value that the case prescribes for a number in `SOLVED`; None if the number follows from the solution."""
+def _prescribed_value(case: xr.Dataset, name: str) -> Any:
+    """Value that the case prescribes for a number in `OUTPUTS`; None if the number follows from the solution."""
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     motion = inputs.get("motion", {})
     return inputs.get(name, motion.get(name, motion.get(name.removeprefix("shift_"))))
@@ -343,7 +343,7 @@ def case_table(case: Case) -> CaseTable:
 def _load_rows(case: Case) -> list[Input]:
     """Load, friction, tilt and motion."""
     if case.approach is not None:
-        rows = [("approach, which takes the load that results", format_quantity(case.approach, "m"))]
+        rows = [("approach, which determines the load", format_quantity(case.approach, "m"))]
     else:
         rows = [
             ("normal load W", format_quantity(case.normal_load, "N")),
@@ -356,7 +356,7 @@ def _load_rows(case: Case) -> list[Input]:
         rows.append(("tilt, positive if larger x is pressed deeper", format_quantity(case.tilt, "rad")))
     if case.approach is not None or case.tilt:
         depths = reference_depths(case.body, case.counterbody)
-        rows += [(SCALARS[name], format_quantity(depth, "m")) for name, depth in depths.items()]
+        rows += [(SCALAR_MEANINGS[name], format_quantity(depth, "m")) for name, depth in depths.items()]
     friction = case.friction
     if isinstance(friction, AxialFriction):
         rows.append(("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))

@@ -33,7 +33,7 @@ TEXT_COLUMNS = {  # Text columns with their meanings
 }
 
 COLUMNS = ("status", "run", *TEXT_COLUMNS)  # Columns of a batch's table that are neither numbers nor sizes
-SIZE = "_size"  # End of the names of columns of sizes, after the dimension
+SIZE_SUFFIX = "_size"  # End of the names of columns of sizes, after the dimension
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
 CHUNK_SIZE = 2**15  # Values compressed together in a ragged array. Speed: more make files smaller, single cases slower
@@ -71,7 +71,7 @@ class Batch:
     @property
     def numbers(self) -> list[str]:
         """Names of the numbers of the cases."""
-        return [name for name in self.cases if name not in COLUMNS and not name.endswith(SIZE)]
+        return [name for name in self.cases if name not in COLUMNS and not name.endswith(SIZE_SUFFIX)]
 
     @property
     def structure(self) -> str:
@@ -81,7 +81,7 @@ class Batch:
 
     def sizes(self, dims: Iterable[str]) -> IntArray:
         """Size (case, dimension) of each case's arrays along `dims`; 0 without arrays."""
-        return np.asarray(self.cases[[f"{dim}{SIZE}" for dim in dims]], dtype=np.int64)
+        return np.asarray(self.cases[[f"{dim}{SIZE_SUFFIX}" for dim in dims]], dtype=np.int64)
 
     def offsets(self, dims: Iterable[str]) -> IntArray:
         """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
@@ -115,8 +115,8 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal structure."""
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
-        for name, entries in batch.attributes.items():
-            attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
+        for name, attribute in batch.attributes.items():
+            attributes[name] = common_attributes(name, attributes[name], attribute) if name in attributes else attribute
     arrays = {
         name: RaggedArray(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
         for name, array in batches[0].arrays.items()
@@ -138,7 +138,7 @@ def common_attributes(name: str, attributes: Mapping[str, Any], other_attributes
 
 def write_batch(folder: Path, name: str, batch: Batch) -> None:
     """Write a batch as a new file, whose name ends with the CRC-32 of the bytes."""
-    path, rename = folder / name, lambda temporary_path: f"{name}-{len(batch)}-{checksum(temporary_path):08x}{SUFFIX}"
+    path, rename = (folder / name, lambda temporary_path: f"{name}-{len(batch)}-{checksum(temporary_path):08x}{SUFFIX}")
     with writing(path, rename) as temporary_path, netcdf_access(path, "write"):
         _write_variables(temporary_path, batch)
 
@@ -157,11 +157,11 @@ def find_damage(path: Path) -> str:
     if not is_regular(path):
         return "it is not a regular file"
     try:
-        code = checksum(path)
+        actual = checksum(path)
     except OSError as error:
         return error.strerror or str(error)
     expected = path.name.removesuffix(SUFFIX).rpartition("-")[2]
-    return "" if expected == f"{code:08x}" else f"its checksum is {code:08x}, not {expected}"
+    return "" if expected == f"{actual:08x}" else f"its checksum is {actual:08x}, not {expected}"
 
 
 def batch_paths(folder: Path) -> list[Path]:
@@ -184,16 +184,16 @@ def _write_variables(path: Path, batch: Batch) -> None:
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.set_fill_off()
         file.createDimension("case", len(batch))
-        column = {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True, "chunksizes": (len(batch),)}
+        storage = {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True, "chunksizes": (len(batch),)}
 
         def create(name: str, dtype: Any, dims: tuple[str, ...], attributes: Mapping[str, Any], **options: Any) -> Any:
-            variable = file.createVariable(name, dtype, dims, **{**column, **options})
+            variable = file.createVariable(name, dtype, dims, **{**storage, **options})
             variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
             return variable
 
         _write_text(file, "case_id", cases.index, "identity of the case, a hash of its parameters")
-        flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
-        status_attrs = {"long_name": "state of the case", "units": "1", **flags}
+        flag_attrs = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
+        status_attrs = {"long_name": "state of the case", "units": "1", **flag_attrs}
         create("status", "i1", ("case",), status_attrs)[:] = cases["status"].map(STATUSES.index)
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = cases["run"]
         shared, tables, parameters = _factor_out_shared([json.loads(text) for text in cases["parameters"]])
@@ -203,15 +203,15 @@ def _write_variables(path: Path, batch: Batch) -> None:
             create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = cases[name]
         for dim in sorted({dim for array in batch.arrays.values() for dim in array.dims}):
             attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": f"{dim}_values"}
-            create(f"{dim}{SIZE}", "i4", ("case",), attributes)[:] = batch.sizes([dim])[:, 0]
+            create(f"{dim}{SIZE_SUFFIX}", "i4", ("case",), attributes)[:] = batch.sizes([dim])[:, 0]
         for name, (dims, values) in batch.arrays.items():
-            sample = f"{'_'.join(dims)}_values"
-            if sample not in file.dimensions:
-                file.createDimension(sample, values.size)
+            value_dim = f"{'_'.join(dims)}_values"
+            if value_dim not in file.dimensions:
+                file.createDimension(value_dim, values.size)
             if values.size:
                 attributes = {**_file_attributes(name, batch.attributes), "array_dimensions": " ".join(dims)}
                 chunks = (min(CHUNK_SIZE, values.size),)
-                create(name, values.dtype, (sample,), attributes, chunksizes=chunks)[:] = values
+                create(name, values.dtype, (value_dim,), attributes, chunksizes=chunks)[:] = values
         file.setncatts(
             {
                 "Conventions": "CF-1.11",
@@ -228,11 +228,11 @@ def _write_variables(path: Path, batch: Batch) -> None:
 
 def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a variable for netCDF: texts and numbers as they are, other values as JSON."""
-    complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
-    types = (str, int, float, np.number)
+    all_attributes = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
+    plain_types = (str, int, float, np.number)
     return {
-        key: value if isinstance(value, types) and not isinstance(value, bool) else json.dumps(value, default=str)
-        for key, value in complete.items()
+        key: value if isinstance(value, plain_types) and not isinstance(value, bool) else json.dumps(value, default=str)
+        for key, value in all_attributes.items()
     }
 
 
@@ -254,14 +254,14 @@ def _factor_out_shared(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any]
         name: value for name, value in parameters[0].items() if all(case.get(name) == value for case in parameters)
     }
     tables: dict[str, int] = {}
-    remaining = []
+    texts = []
     for case in parameters:
-        reduced = {name: value for name, value in case.items() if name not in shared}
-        for name, value in reduced.items():
+        own_parameters = {name: value for name, value in case.items() if name not in shared}
+        for name, value in own_parameters.items():
             if isinstance(value, (dict, list)):
-                reduced[name] = {"table": tables.setdefault(json.dumps(value), len(tables))}
-        remaining.append(json.dumps(reduced))
-    return shared, [json.loads(table) for table in tables], remaining
+                own_parameters[name] = {"table": tables.setdefault(json.dumps(value), len(tables))}
+        texts.append(json.dumps(own_parameters))
+    return shared, [json.loads(table) for table in tables], texts
 
 
 def _restore_parameters(shared: dict[str, Any], tables: list[Any], remaining: str) -> str:
@@ -283,16 +283,16 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
         file.set_auto_maskandscale(False)
         if file.dimensions["case_id_length"].size != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
-        selected = None if arrays is None else set(arrays)
-        columns, ragged, attributes = {"status": np.array(STATUSES)[file["status"][:]]}, {}, {}
+        selected_names = None if arrays is None else set(arrays)
+        columns, ragged_arrays, attributes = {"status": np.array(STATUSES)[file["status"][:]]}, {}, {}
         for name, variable in file.variables.items():
             if name in ("case_id", "status") or (name == "parameters" and not parameters):
                 continue
             attributes[name] = {key: variable.getncattr(key) for key in variable.ncattrs()}
             if dims := attributes[name].pop("array_dimensions", ""):
-                read_values = selected is None or name in selected
-                values = variable[:] if read_values else np.empty(0, dtype=variable.dtype)
-                ragged[name] = RaggedArray(tuple(dims.split()), values)
+                is_selected = selected_names is None or name in selected_names
+                values = variable[:] if is_selected else np.empty(0, dtype=variable.dtype)
+                ragged_arrays[name] = RaggedArray(tuple(dims.split()), values)
             else:
                 columns[name] = variable[:]
         if parameters:
@@ -300,7 +300,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
         return Batch(
             cases=pd.DataFrame(columns, index=file["case_id"][:]),
-            arrays=ragged,
+            arrays=ragged_arrays,
             attributes=attributes,
             coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
             run_context=json.loads(file.getncattr(RUN_ATTRIBUTE)),
@@ -322,10 +322,10 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
     """Read one case of a batch on its cells, with its numbers, parameters, the context of its run, and named arrays."""
     batch = read_batch(path, parameters=True)
-    selected = set(batch.arrays if names is None else names) & set(batch.arrays)
-    selected_dims = {dim for name in selected for dim in batch.arrays[name].dims}
+    selected_names = set(batch.arrays if names is None else names) & set(batch.arrays)
+    selected_dims = {dim for name in selected_names for dim in batch.arrays[name].dims}
     coordinates = [name for name in batch.coordinates if set(batch.arrays[name].dims) <= selected_dims]
-    offsets = {name: batch.offsets(batch.arrays[name].dims) for name in {*selected, *coordinates}}
+    offsets = {name: batch.offsets(batch.arrays[name].dims) for name in {*selected_names, *coordinates}}
     bounds = {name: [(starts[row], starts[row + 1])] for name, starts in offsets.items()}
     variables = {}
     for name, (values,) in read_slices(path, bounds).items():
@@ -338,21 +338,21 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
     """Add the arrays of a solved case that a level above the summary retains; fields in single precision."""
-    deep = [name for name, entry in dataset.data_vars.items() if any(str(dim).startswith("z") for dim in entry.dims)]
-    retained = dataset if level == "fields" else dataset.drop_vars(deep)
-    dims = {str(dim) for entry in retained.data_vars.values() for dim in entry.dims}
+    fields = [name for name, array in dataset.data_vars.items() if any(str(dim).startswith("z") for dim in array.dims)]
+    retained = dataset if level == "fields" else dataset.drop_vars(fields)
+    dims = {str(dim) for array in retained.data_vars.values() for dim in array.dims}
     arrays = {}
     for name, variable in retained.variables.items():
         if variable.ndim and dims.issuperset(variable.dims):
             values = variable.values
             if values.dtype == bool:
                 values = values.astype(np.int8)
-            elif name in deep and values.ndim >= 2:
+            elif name in fields and values.ndim >= 2:
                 values = values.astype(np.float32)
             arrays[str(name)] = RaggedArray(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
-        cases=batch.cases.assign(**{f"{dim}{SIZE}": dataset.sizes[dim] for dim in sorted(dims)}),
+        cases=batch.cases.assign(**{f"{dim}{SIZE_SUFFIX}": dataset.sizes[dim] for dim in sorted(dims)}),
         arrays=arrays,
         attributes=batch.attributes | {name: dict(retained[name].attrs) for name in arrays},
         coordinates=frozenset(arrays) & {str(name) for name in retained.coords},

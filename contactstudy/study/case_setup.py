@@ -87,7 +87,7 @@ def _check_choices(values: Mapping[str, Any]) -> None:
             raise InvalidInputError(", ".join(stated_names or names), stated_values, allowed)
 
 
-def _refuse(values: Mapping[str, Any], names: Iterable[str], allowed: str, hint: str = "") -> None:
+def _reject(values: Mapping[str, Any], names: Iterable[str], allowed: str, hint: str = "") -> None:
     """Raise if a case has one of the named parameters."""
     for name in names:
         if name in values:
@@ -95,17 +95,17 @@ def _refuse(values: Mapping[str, Any], names: Iterable[str], allowed: str, hint:
 
 
 def _check_approach(parameters: Mapping[str, Any]) -> None:
-    """Raise if a case at an approach has a parameter in half-widths: this half-width follows from the solution."""
+    """Raise if a case at an approach has a parameter in half-widths: the half-width follows from the solution."""
     if "approach" in parameters:
         allowed = "left out where the approach is prescribed"
-        _refuse(parameters, UNIFORM_CELL_PARAMETERS, allowed, "leave it out: columns are refined, to `accuracy`")
+        _reject(parameters, UNIFORM_CELL_PARAMETERS, allowed, "leave it out: columns are refined, to `accuracy`")
         hint = "leave it out: the solver chooses the points, after the half-width"
-        _refuse(parameters, SCALED_POSITIONS, allowed, hint)
-        _refuse(parameters, ["e_over_a"], allowed, "give end_distance (metres)")
-        _refuse(parameters, ["load_offset"], allowed, "prescribe the load instead")
+        _reject(parameters, SCALED_POSITIONS, allowed, hint)
+        _reject(parameters, ["e_over_a"], allowed, "give end_distance (metres)")
+        _reject(parameters, ["load_offset"], allowed, "prescribe the load instead")
 
 
-def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
+def _build_body(values: Mapping[str, Any], material: Material, length: float) -> Body:
     """Body of a case with a `length` between its free ends."""
     kind, model, depth = values["body"], values["model"], values.get("reference_depth")
     if kind == "finite-length":
@@ -120,7 +120,7 @@ def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
 def _roller_material(values: Mapping[str, Any]) -> Material | None:
     """Material of an elastic roller, by default the body's; None for a rigid roller."""
     if values["roller_body"] == "rigid":
-        _refuse(values, ("roller_young", "roller_poisson"), "left out for a rigid roller", "or give roller_body")
+        _reject(values, ("roller_young", "roller_poisson"), "left out for a rigid roller", "or give roller_body")
         return None
     return Material(
         young=values.get("roller_young", values["young"]), poisson=values.get("roller_poisson", values["poisson"])
@@ -148,20 +148,20 @@ def build_motion(values: Mapping[str, Any]) -> Motion:
     return Sliding(body_speed=(1 - half_slip) * speed, roller_speed=(1 + half_slip) * speed)
 
 
-def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
+def _build_lubricant(values: Mapping[str, Any]) -> Lubricant | None:
     """Lubricant of a case; None for a dry case."""
-    sources = [name for name in LUBRICANT_PAIRS if name in values]
-    if len(sources) > 1:
-        raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
-    if not sources:
-        _refuse(values, (*LUBRICANT_PAIRS.values(), *FILM_PARAMETERS), "left out without a film")
+    given = [name for name in LUBRICANT_PAIRS if name in values]
+    if len(given) > 1:
+        raise InvalidInputError(", ".join(given), tuple(values[name] for name in given), "one of the two")
+    if not given:
+        _reject(values, (*LUBRICANT_PAIRS.values(), *FILM_PARAMETERS), "left out without a film")
         return None
-    excluded = {*LUBRICANT_PAIRS.values(), *UNIFORM_CELL_PARAMETERS, *SCALED_POSITIONS} - {LUBRICANT_PAIRS[sources[0]]}
-    _refuse(without_defaults(values), sorted(excluded), "left out for a film")
-    for name in (LUBRICANT_PAIRS[sources[0]], "entrainment_speed"):
+    excluded = {*LUBRICANT_PAIRS.values(), *UNIFORM_CELL_PARAMETERS, *SCALED_POSITIONS} - {LUBRICANT_PAIRS[given[0]]}
+    _reject(without_defaults(values), sorted(excluded), "left out for a film")
+    for name in (LUBRICANT_PAIRS[given[0]], "entrainment_speed"):
         if name not in values:
-            raise InvalidInputError(name, None, f"given with {sources[0]}")
-    if "lubricant" in sources:
+            raise InvalidInputError(name, None, f"given with {given[0]}")
+    if "lubricant" in given:
         return Lubricant.preset(values["lubricant"], values["temperature"])
     return Lubricant(viscosity=values["viscosity"], pressure_viscosity=values["pressure_viscosity"])
 
@@ -194,7 +194,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
     mid_length = sizes.end_distance + 0.5 * sizes.roller_length
     case = Case(
-        body=_body(values, material, sizes.body_length),
+        body=_build_body(values, material, sizes.body_length),
         roller=Roller(
             radius=sizes.radius,
             length=sizes.roller_length,
@@ -206,7 +206,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         end_distance=sizes.end_distance,
         load_position=mid_length + values["load_offset"] if "load_offset" in values else None,
         motion=build_motion(values),
-        lubricant=_lubricant(values),
+        lubricant=_build_lubricant(values),
         **keywords_of(Case, values | {"body_edge": build_profile("body_edge", values["body_edge"], sizes)}),
     )
     options: dict[str, Any] = {

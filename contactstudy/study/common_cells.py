@@ -1,8 +1,8 @@
 """Common cells of a study: positions over the half-width on which the surfaces and stresses of all cases lie.
 
-The common edges along x are edges of the cases at a distance of at least half the narrowest cell beside each, with
+The common edges along x are those edges of the cases that lie at least half of the narrowest adjacent cell apart, with
 further edges where stress points are denser, and a thin cell on each end of a case. Pressure and traction are averaged
-over a common cell, so loads remain; flags have the value of the case's cell at the centre; others are interpolated.
+over a common cell, which preserves loads; flags have the value of the case's cell at the centre; others are linear.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of, interpolate_
 from contactstudy.checks import FloatArray
 from contactstudy.profiles.measured_profile import minmod
 
-MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases beside its edges. Accuracy
+MIN_WIDTH = 0.5  # Least width of a common cell over the narrowest adjacent cell of all cases. Accuracy
 END_WIDTH = 1e-10  # Width of the cell on the end of a case over the longest case, above rounding. Accuracy
 AVERAGED_VARIABLES = frozenset({"pressure", "traction_x", "traction_y"})  # averaged over a common cell
 FLAG_VARIABLES = frozenset({"stick"})  # Variables that are true or false
@@ -38,20 +38,20 @@ def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
     """Edges along x, over the half-width, that resolve the cells of all cases."""
     union = np.unique(np.concatenate(edges))
     midpoints = centres_of(union)
-    narrowest = np.full(midpoints.size, np.inf)
+    min_widths = np.full(midpoints.size, np.inf)
     for case_edges in edges:
         cells = np.searchsorted(case_edges, midpoints) - 1
         in_case = (cells >= 0) & (cells < case_edges.size - 1)
-        narrowest[in_case] = np.minimum(narrowest[in_case], np.diff(case_edges)[cells[in_case]])
+        min_widths[in_case] = np.minimum(min_widths[in_case], np.diff(case_edges)[cells[in_case]])
     # Edges of narrower cells precede edges of wider cells near them.
-    narrowest_beside = np.minimum(narrowest[:-1], narrowest[1:])
-    retained = sorted({0, union.size - 1})
-    for index in (1 + np.argsort(narrowest_beside, kind="stable")).tolist():
-        insertion = bisect(retained, index)
-        distance = min(union[index] - union[retained[insertion - 1]], union[retained[insertion]] - union[index])
-        if distance >= MIN_WIDTH * narrowest_beside[index - 1]:
-            retained.insert(insertion, index)
-    return np.asarray(union[retained])
+    adjacent_widths = np.minimum(min_widths[:-1], min_widths[1:])
+    kept = sorted({0, union.size - 1})
+    for index in (1 + np.argsort(adjacent_widths, kind="stable")).tolist():
+        place = bisect(kept, index)
+        distance = min(union[index] - union[kept[place - 1]], union[kept[place]] - union[index])
+        if distance >= MIN_WIDTH * adjacent_widths[index - 1]:
+            kept.insert(place, index)
+    return np.asarray(union[kept])
 
 
 def end_cells(edges: Sequence[FloatArray], points: Sequence[FloatArray]) -> FloatArray:
@@ -76,7 +76,7 @@ def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
     return np.union1d(edges, centres_of(points)[cells[1:] == cells[:-1]])
 
 
-def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
+def centre_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
     """Edges moved and added so that every point is the centre of a cell."""
     ends = edges[[0, -1]]
     for index, point in enumerate(points):
@@ -85,7 +85,7 @@ def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
         width = high - low
         is_centre = np.abs(centres_of(edges) - point).min() < END_WIDTH * (edges[-1] - edges[0])
         spacing = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point).min(initial=np.inf)
-        # A neighbour in the same cell, or at its edge, moves the cell's edges.
+        # Two points in one cell, or at its edge, move the cell's edges.
         is_alone = spacing > 0.5 * width * (1 + SPACING_TOLERANCE)
         if (is_centre and is_alone) or not edges[0] < point < edges[-1]:
             continue
@@ -93,8 +93,8 @@ def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
         distance = min(point - low, high - point)
         if distance > SPACING_TOLERANCE * width:
             half_cell = min(half_cell, distance)
-        beyond_cell = np.abs(edges - point) > half_cell * (1 + SPACING_TOLERANCE)
-        edges = np.union1d(edges[beyond_cell], [point - half_cell, point + half_cell])
+        is_beyond_cell = np.abs(edges - point) > half_cell * (1 + SPACING_TOLERANCE)
+        edges = np.union1d(edges[is_beyond_cell], [point - half_cell, point + half_cell])
         edges[[0, -1]] = ends  # without rounding
     return edges
 
@@ -130,7 +130,7 @@ class Resampling:
         result[~overlap_fraction.any(axis=1)] = self.fill
         return np.asarray(result)
 
-    def select_containing(self, values: FloatArray) -> FloatArray:
+    def select_cells(self, values: FloatArray) -> FloatArray:
         """Values along the first axis of the case's cells that contain the positions; 0 beyond the cells."""
         cells = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, self.source.size - 2)
         result = values[cells]
@@ -146,9 +146,9 @@ class Resampling:
         with np.errstate(invalid="ignore"):
             result = interpolate_columns(values, positions, self.axis)
         # Next to an infinite gap linear interpolation has no value.
-        containing = np.searchsorted(self.source, self.axis) - 1
-        nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
-        result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
+        cell_indices = np.searchsorted(self.source, self.axis) - 1
+        nearest_indices = np.searchsorted(positions, self.axis) if self.has_points else cell_indices
+        result = np.where(np.isfinite(result), result, values[np.clip(nearest_indices, 0, positions.size - 1)])
         result[self.is_outside] = np.nan
         return result
 
@@ -160,15 +160,15 @@ def resample(name: str, values: npt.NDArray[Any], resamplings: Iterable[Resampli
     for axis, resampling in reversed(list(enumerate(resamplings))):
         if resampling is None:
             continue
-        axis_first = np.moveaxis(result, axis, 0)
+        moved_values = np.moveaxis(result, axis, 0)
         if name in AVERAGED_VARIABLES:
-            averages = resampling.average(axis_first.reshape(axis_first.shape[0], -1))
-            axis_first = averages.reshape(-1, *axis_first.shape[1:])
+            averages = resampling.average(moved_values.reshape(moved_values.shape[0], -1))
+            moved_values = averages.reshape(-1, *moved_values.shape[1:])
         elif name in FLAG_VARIABLES:
-            axis_first = resampling.select_containing(axis_first)
+            moved_values = resampling.select_cells(moved_values)
         else:
-            axis_first = resampling.interpolate(axis_first)
-        result = np.moveaxis(axis_first, 0, axis)
+            moved_values = resampling.interpolate(moved_values)
+        result = np.moveaxis(moved_values, 0, axis)
     return result
 
 

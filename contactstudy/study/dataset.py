@@ -19,10 +19,10 @@ from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.variables import DERIVED, ERROR_KIND, NOT_ESTIMATED, describe, labels
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.study.batches import SIZE, read_batch, read_slices
+from contactstudy.study.batches import SIZE_SUFFIX, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
-    centre_cells_on,
+    centre_cells,
     common_columns,
     common_rows,
     end_cells,
@@ -57,9 +57,8 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
         * every number of the cases, in memory, NaN where it is absent;
         * surfaces and stresses, read on demand, along ``x_over_a`` (distance from the free end over the half-width),
           ``y_over_a`` (``y_field_over_a`` of separate stress points) and ``z_over_a``; ``x``, ``y`` and ``z`` are each
-          case's metres. Pressure and traction are averaged over the common cells, so that loads remain, other
-          variables are interpolated. With ``cells="original"`` different positions are padded with NaN along
-          ``x_index``, ``x_field_index``, ...
+          case's metres. Pressure and traction are averaged over the common cells, other variables are interpolated.
+          With ``cells="original"`` different positions are padded with NaN along ``x_index``, ``x_field_index``, ...
 
     Raises
     ------
@@ -126,9 +125,9 @@ def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
     """Dataset of a study with lazy surfaces and fields; without surfaces and fields if `cells` is None."""
     if cells is not None:
         checks.known_name("cells", cells, ("common", "original"))
-    results = Folder(folder)
-    study = results.read_study()
-    states = results.states(study.plan())
+    study_folder = Folder(folder)
+    study = study_folder.read_study()
+    states = study_folder.states(study.plan())
     dataset = numbers_dataset(states)
     if cells is not None and (fields := Fields(states, common=cells == "common")).names:
         dataset = fields.add_to(dataset)
@@ -141,8 +140,8 @@ def numbers_dataset(states: States) -> xr.Dataset:
     plan, cube = states.plan, states.plan.cube
     coordinates: dict[str, Any] = {}
     for name, (dim, values) in cube.labels.items():
-        missing = "" if any(isinstance(value, str) for value in values) else np.nan
-        column = np.asarray([missing if value is None else value for value in values])
+        missing_value = "" if any(isinstance(value, str) for value in values) else np.nan
+        column = np.asarray([missing_value if value is None else value for value in values])
         attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
         coordinates[name] = (dim, column, attributes)
     variables: dict[str, Any] = {
@@ -170,10 +169,10 @@ def numbers_dataset(states: States) -> xr.Dataset:
 def _drop_constant_dims(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:
     """Drop dimensions along which a table is constant or NaN."""
     for axis in range(len(dims) - 1, -1, -1):
-        present = np.isfinite(table)
-        first = np.take_along_axis(table, np.expand_dims(present.argmax(axis=axis), axis), axis)
-        if (np.isclose(table, first, rtol=1e-12, atol=1e-15) | ~present).all():
-            table = first.squeeze(axis)
+        is_present = np.isfinite(table)
+        first_values = np.take_along_axis(table, np.expand_dims(is_present.argmax(axis=axis), axis), axis)
+        if (np.isclose(table, first_values, rtol=1e-12, atol=1e-15) | ~is_present).all():
+            table = first_values.squeeze(axis)
             dims = (*dims[:axis], *dims[axis + 1 :])
     return dims, table
 
@@ -256,20 +255,20 @@ class Fields:
             if not self._batches[batch_number].arrays:
                 continue
             batch = read_batch(path, arrays=coordinates)
-            for dim in [dim for dim in self._dims if f"{dim}{SIZE}" in batch.cases]:
+            for dim in [dim for dim in self._dims if f"{dim}{SIZE_SUFFIX}" in batch.cases]:
                 starts, positions = batch.offsets((dim,)), result[dim]
-                numbers = np.arange(starts[-1], dtype=np.float64) - np.repeat(starts[:-1], np.diff(starts))
-                values = batch.arrays[dim].values if dim in batch.arrays else numbers
+                cell_numbers = np.arange(starts[-1], dtype=np.float64) - np.repeat(starts[:-1], np.diff(starts))
+                values = batch.arrays[dim].values if dim in batch.arrays else cell_numbers
                 widths = batch.arrays[f"{dim}_width"].values if f"{dim}_width" in batch.arrays else np.zeros(0)
                 for index in np.flatnonzero(batch_of == batch_number).tolist():
-                    span = slice(starts[row_of[index]], starts[row_of[index] + 1])
-                    key = (values[span].tobytes(), widths[span].tobytes(), half_widths[index])
-                    if span.start == span.stop:
+                    value_slice = slice(starts[row_of[index]], starts[row_of[index] + 1])
+                    key = (values[value_slice].tobytes(), widths[value_slice].tobytes(), half_widths[index])
+                    if value_slice.start == value_slice.stop:
                         continue
                     if key not in indices[dim]:
                         indices[dim][key] = len(positions.values)
-                        positions.values.append(values[span])
-                        positions.widths.append(widths[span])
+                        positions.values.append(values[value_slice])
+                        positions.widths.append(widths[value_slice])
                         positions.scales.append(float(half_widths[index]))
                     positions.position_index[index] = indices[dim][key]
         return {dim: positions for dim, positions in result.items() if positions.values}
@@ -323,14 +322,14 @@ class Fields:
         name = dim if all(np.array_equal(row, positions.values[0]) for row in positions.values) else f"{dim}_index"
         size, index = max(values.size for values in positions.values), positions.position_index
 
-        def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
+        def create_coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
             return (name, rows[0]) if _all_equal(rows, rows[0]) else self._pad_rows(name, rows, index, size)
 
-        coordinates = {dim: coordinate(positions.values)}
+        coordinates = {dim: create_coordinate(positions.values)}
         if positions.has_widths:
-            coordinates[f"{dim}_width"] = coordinate(positions.widths)
+            coordinates[f"{dim}_width"] = create_coordinate(positions.widths)
         if np.isfinite(positions.scales).all():
-            coordinates[f"{dim}_over_a"] = coordinate(positions.over_a)
+            coordinates[f"{dim}_over_a"] = create_coordinate(positions.over_a)
         return {dim: StudyAxis(name, size, index)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
@@ -339,8 +338,8 @@ class Fields:
         sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
         ends = end_cells(sources[first_dim], sources.get("x_field", []))
         rows = [*sources[first_dim], *np.sort(ends, axis=1)]
-        union = common_rows if first_dim == "y" else common_columns
-        axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
+        join_edges = common_rows if first_dim == "y" else common_columns
+        axis = borders = rows[0] if _all_equal(rows, rows[0]) else join_edges(rows)
         if first_dim not in CELL_DIMS:
             borders = np.concatenate([axis[:1], centres_of(axis), axis[-1:]])
         elif "x_field" in sources:
@@ -348,7 +347,7 @@ class Fields:
             parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
             has_stated_points = any("field_x_over_a" in entry for entry in parameters)
-            borders = centre_cells_on(borders, points) if has_stated_points else split_cells(borders, points)
+            borders = centre_cells(borders, points) if has_stated_points else split_cells(borders, points)
         if first_dim in CELL_DIMS:
             axis = centres_of(borders)
         for end in ends[:, 0]:
@@ -356,12 +355,12 @@ class Fields:
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
             has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
-            positions, covered = (axis, axis) if has_points else (centres_of(borders), borders)
+            positions, common_source = (axis, axis) if has_points else (centres_of(borders), borders)
             maps[dim] = [
                 Resampling(source=source, axis=positions, borders=borders, fill=fill, has_points=has_points)
                 for source in source_rows
             ]
-            resamplings = None if _all_equal(source_rows, covered) else maps[dim]
+            resamplings = None if _all_equal(source_rows, common_source) else maps[dim]
             axes[dim] = StudyAxis(name, axis.size, self._positions[dim].position_index, resamplings)
         return axes, self._common_coordinates(maps, axis, borders)
 
@@ -374,12 +373,12 @@ class Fields:
         coordinates: dict[str, Any] = {over_a: (over_a, axis)}
         for dim, resamplings in maps.items():
             positions = self._positions[dim]
-            shared = [np.where(resampling.is_outside, np.nan, resampling.axis) for resampling in resamplings]
-            rows = [scale * row for row, scale in zip(shared, positions.scales, strict=True)]
+            common_positions = [np.where(resampling.is_outside, np.nan, resampling.axis) for resampling in resamplings]
+            rows = [scale * row for row, scale in zip(common_positions, positions.scales, strict=True)]
             coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
-        uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
-        if first_dim == "x" and not uniform:
+        is_uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
+        if first_dim == "x" and not is_uniform:
             rows = [np.diff(borders) * scale for scale in positions.scales]
             coordinates["x_width"] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         return coordinates
@@ -418,15 +417,15 @@ class CaseArray(BackendArray):
         selected, field_key = _index_axes(self._cases, key[:swept_count]), key[swept_count:]
         shape = tuple(axis.size for axis in self._axes)
         fill = np.nan if self.dtype.kind == "f" else 0
-        empty = _index_axes(np.full(shape, fill, dtype=self.dtype), field_key)
-        result = np.broadcast_to(empty, (selected.size, *empty.shape)).copy()
-        for index, values in self._values(selected.ravel()):
+        empty_values = _index_axes(np.full(shape, fill, dtype=self.dtype), field_key)
+        result = np.broadcast_to(empty_values, (selected.size, *empty_values.shape)).copy()
+        for index, values in self._read_cases(selected.ravel()):
             padded = np.full(shape, fill, dtype=self.dtype)
             padded[tuple(slice(size) for size in values.shape)] = values
             result[index] = _index_axes(padded, field_key)
-        return result.reshape((*selected.shape, *empty.shape))
+        return result.reshape((*selected.shape, *empty_values.shape))
 
-    def _values(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
+    def _read_cases(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
         """Yield the values of cases on the study's axes, each with its number among `cases`; batch by batch."""
         batch_of, row_of = self._states.batch, self._states.row
         for batch_index in np.unique(batch_of[cases[cases >= 0]]).tolist():
@@ -437,8 +436,8 @@ class CaseArray(BackendArray):
             indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
             rows = [int(row_of[cases[index]]) for index in indices]
             bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
-            flat = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]
-            for index, row, values in zip(indices, rows, flat, strict=True):
+            slices_of_cases = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]
+            for index, row, values in zip(indices, rows, slices_of_cases, strict=True):
                 if values.size:
                     case_values = values.reshape(sizes[row])
                     maps = [

@@ -27,7 +27,7 @@ KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclud
 MAX_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 
-def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
+def _list_tables(name: str, value: object) -> list[Mapping[str, Any]]:
     """Return a list of tables from a table or a list of tables."""
     entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
@@ -53,8 +53,7 @@ class Study:
     cases : list of mappings
         Explicit cases, each added to `base`, in addition to the product.
     exclude : list of mappings
-        Combinations to leave out: every named parameter has the value, or one of the values. A profile is named by its
-        label.
+        Combinations to leave out: every named parameter has the value, or one of the values; a profile has its label.
     level : {"summary", "surface", "fields"}
         Retained results: numbers; also pressure, gap, ...; also stresses.
     description : str
@@ -88,14 +87,14 @@ class Study:
     description: str = ""
 
     def __repr__(self) -> str:
-        lines = [self._head, self.description, *(f"{meaning}: {text}" for meaning, text in self._rows())]
+        lines = [self._headline, self.description, *(f"{meaning}: {text}" for meaning, text in self._rows())]
         return "\n  ".join(filter(None, lines))
 
     def _repr_html_(self) -> str:
-        return f"<b>{escape(self._head)}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
+        return f"<b>{escape(self._headline)}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
 
     @property
-    def _head(self) -> str:
+    def _headline(self) -> str:
         return f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"
 
     def _rows(self) -> Iterator[tuple[str, str]]:
@@ -105,7 +104,7 @@ class Study:
         for name, axis_kind, values in columns:
             yield f"{name} ({axis_kind})", format_list([format_value(name, value) for value in values])
         if self.cases:
-            yield "cases", f"{len(self.cases)} explicit ones"
+            yield "cases", f"{len(self.cases)} explicit cases"
         for name, value in self.base.items():
             yield name, format_value(name, value)
         if self.exclude:
@@ -118,33 +117,33 @@ class Study:
         checks.instance("description", self.description, str, "text")
         for key in ("base", "sweep"):
             checks.instance(key, getattr(self, key), Mapping, "a table of parameters")
-        set_ = object.__setattr__
-        set_(self, "base", check_parameters(self.base, "base"))
-        set_(self, "sweep", {name: self._check_values("sweep", name, values) for name, values in self.sweep.items()})
-        zipped = []
-        for group in _tables("zip", self.zip):
+        store = object.__setattr__
+        store(self, "base", check_parameters(self.base, "base"))
+        store(self, "sweep", {name: self._check_values("sweep", name, values) for name, values in self.sweep.items()})
+        zipped_groups = []
+        for group in _list_tables("zip", self.zip):
             columns = {name: self._check_values("zip", name, values) for name, values in group.items()}
             lengths = {name: len(column) for name, column in columns.items()}
             if len(set(lengths.values())) > 1:
                 raise InvalidInputError("zip", lengths, "lists of equal length")
-            zipped.append(columns)
-        set_(self, "zip", tuple(group for group in zipped if group))
-        set_(self, "cases", tuple(check_parameters(case, "cases") for case in _tables("cases", self.cases)))
-        set_(self, "exclude", tuple(self._check_rule(rule) for rule in _tables("exclude", self.exclude)))
+            zipped_groups.append(columns)
+        store(self, "zip", tuple(group for group in zipped_groups if group))
+        store(self, "cases", tuple(check_parameters(case, "cases") for case in _list_tables("cases", self.cases)))
+        store(self, "exclude", tuple(self._check_rule(rule) for rule in _list_tables("exclude", self.exclude)))
         names = [*self.sweep, *(name for group in self.zip for name in group)]
         for name in names:
             if names.count(name) > 1:
                 raise InvalidInputError("zip", name, "a parameter that is not swept or zipped already")
-        present = {*self.base, *names, *(name for case in self.cases for name in case)}
-        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not present & {*group}]:
+        given = {*self.base, *names, *(name for case in self.cases for name in case)}
+        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not given & {*group}]:
             allowed = f"such that cases have {'; '.join(missing)}"
-            raise InvalidInputError("parameters", sorted(present), allowed, "give it in base, sweep, zip or cases")
+            raise InvalidInputError("parameters", sorted(given), allowed, "give it in base, sweep, zip or cases")
 
     @staticmethod
-    def _check_values(where: str, name: str, values: object) -> list[Any]:
+    def _check_values(section: str, name: str, values: object) -> list[Any]:
         """Values of a swept parameter as a list that is not empty."""
-        checks.known_name(where, str(name), PARAMETERS)
-        argument = f"{where}.{name}"
+        checks.known_name(section, str(name), PARAMETERS)
+        argument = f"{section}.{name}"
         if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
             values = check_points(argument, values)
         if isinstance(values, np.ndarray):
@@ -153,7 +152,7 @@ class Study:
             allowed = "a list of at least one value, or for numbers a table with start, stop and count"
             raise InvalidInputError(argument, values, allowed)
         column = [PARAMETERS[name].normalize(value) for value in values]
-        if where == "sweep":
+        if section == "sweep":
             entries = [label(value) for value in column]
             if duplicates := [entry for entry in entries if entries.count(entry) > 1]:
                 raise InvalidInputError(argument, duplicates[0], "a list of different values", "it appears twice")
@@ -219,7 +218,7 @@ class Study:
         level: str | None = None,
         description: str | None = None,
     ) -> Study:
-        """Study whose cases are the entries of a table, or a part of a study that was opened.
+        """Study whose cases are the entries of a table, or a selection of an opened study.
 
         Parameters
         ----------
@@ -265,10 +264,10 @@ class Study:
     @property
     def size(self) -> int:
         """Number of combinations and explicit cases, before any is excluded."""
-        return self._product.products + len(self.cases)
+        return self._full_plan.products + len(self.cases)
 
     @property
-    def _product(self) -> Plan:
+    def _full_plan(self) -> Plan:
         """Plan of all combinations and explicit cases, before any is excluded."""
         axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
         for group in self.zip:
@@ -285,33 +284,33 @@ class Study:
             If there are more than :data:`MAX_CASES`.
         """
         if self.size > MAX_CASES:
-            limit = f"and {MAX_CASES} is the most that one study may have: sweep fewer values, or make several studies"
+            limit = f"above the maximum of {MAX_CASES}: sweep fewer values, or divide the study into several studies"
             raise StudyFileError(f"study {self.name!r} has {self.size} combinations, {limit}")
-        product = self._product
-        excluded = np.zeros(self.size, dtype=bool)
-        unknown = []
+        full_plan = self._full_plan
+        is_excluded = np.zeros(self.size, dtype=bool)
+        unknown_messages = []
         for rule in self.exclude:
-            matching = np.ones(excluded.size, dtype=bool)
+            is_matching = np.ones(is_excluded.size, dtype=bool)
             for name, allowed in rule.items():
-                labels, codes = self._labels(product, name)
-                matching &= np.array([text in allowed for text in labels])[codes]
+                labels, codes = self._labels(full_plan, name)
+                is_matching &= np.array([text in allowed for text in labels])[codes]
                 used_labels = [labels[code] for code in np.unique(codes)]
-                unknown += [
+                unknown_messages += [
                     f"exclude.{name} = {value!r}: no case has this value, so it excludes nothing"
                     for value in allowed
                     if value not in used_labels
                 ]
-            excluded |= matching
-        return replace(product, chosen=np.flatnonzero(~excluded), unknown=tuple(dict.fromkeys(unknown)))
+            is_excluded |= is_matching
+        return replace(full_plan, chosen=np.flatnonzero(~is_excluded), unknown=tuple(dict.fromkeys(unknown_messages)))
 
-    def _labels(self, product: Plan, name: str) -> tuple[list[Any], IntArray]:
+    def _labels(self, full_plan: Plan, name: str) -> tuple[list[Any], IntArray]:
         """Labels of a parameter, and the index of the label of each combination and of each explicit case."""
         shared = self.base.get(name, PARAMETERS[name].default)
-        values, codes = [shared], np.zeros(product.products, dtype=np.int64)
-        for index, axis in enumerate(product.axes):
+        values, codes = [shared], np.zeros(full_plan.products, dtype=np.int64)
+        for index, axis in enumerate(full_plan.axes):
             if name in axis[0]:
                 values = [step[name] for step in axis]
-                codes = np.unravel_index(np.arange(product.products), product.shape)[index]
+                codes = np.unravel_index(np.arange(full_plan.products), full_plan.shape)[index]
         explicit = [case.get(name, shared) for case in self.cases]
         all_codes = np.concatenate([codes, len(values) + np.arange(len(explicit))])
         return [label(value) for value in (*values, *explicit)], all_codes
@@ -361,8 +360,8 @@ def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any
     """Return the keys of a study of the cases in a selection of its Dataset; as a product if the selection allows."""
     plan = study.plan()
     identities = np.char.encode(table["case_id"].values.ravel().astype(np.str_))
-    selected = np.flatnonzero(np.isin(plan.ids, identities)).tolist()
-    if not selected:
+    selected_indices = np.flatnonzero(np.isin(plan.ids, identities)).tolist()
+    if not selected_indices:
         raise InvalidInputError("table", f"{table['case_id'].size} cases", f"with cases of the study {study.name!r}")
     content: dict[str, Any] = {
         "name": study.name,
@@ -370,15 +369,15 @@ def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any
         "description": study.description,
         "base": {**study.base, **base},
     }
-    cases = [plan.varying(index) for index in selected]
+    cases = [plan.varying(index) for index in selected_indices]
     for name in base:
         if any(name in case for case in cases):
             raise InvalidInputError("base", name, "a parameter that is not swept")
     if study.cases or not plan.axes:
         return content | {"cases": cases if study.cases else []}
-    steps = [np.unique(column) for column in np.unravel_index(plan.chosen[selected], plan.shape)]
+    steps = [np.unique(column) for column in np.unravel_index(plan.chosen[selected_indices], plan.shape)]
     selected_product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
-    if np.isin(selected_product, plan.chosen).sum() != len(selected):
+    if np.isin(selected_product, plan.chosen).sum() != len(selected_indices):
         return content | {"cases": cases}
     groups = [
         {name: [axis[step][name] for step in axis_steps] for name in axis[0]}

@@ -91,7 +91,7 @@ class Engine:
 
 @contextlib.contextmanager
 def _report_lost_scheduler() -> Iterator[None]:
-    """Replace each error of the connection; those of tasks, which may be errors of files, are raised elsewhere."""
+    """Convert errors of the connection; errors of tasks, which may be errors of files, arise outside this block."""
     try:
         yield
     except OSError as error:  # dask raises OSError itself, or one of its subclasses, depending on the moment
@@ -248,8 +248,8 @@ class Tasks:
             plan, cases = self._plan, list[PlannedCase]()
             # Tasks of this size let all workers end at about the same time; one worker needs no balance.
             size = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
-            limit = int(min(size, self.remaining / (2 * workers - 1))) if self._cases else 1
-            while self._groups and (not cases or len(cases) + len(self._groups[0]) <= limit):
+            max_cases = int(min(size, self.remaining / (2 * workers - 1))) if self._cases else 1
+            while self._groups and (not cases or len(cases) + len(self._groups[0]) <= max_cases):
                 cases += [plan[index] for index in self._groups.popleft()]
             profiles = user_profiles([case.parameters for case in cases])
             task = replace(self._template, cases=tuple(cases), profiles=profiles)
@@ -264,18 +264,18 @@ class Tasks:
 
     def return_task(self, task: Task, *, died: bool) -> list[PlannedCase]:
         """Return a task to the queue, divided if its worker died; returns cases with which two workers died."""
-        failed = [case for case in task.cases if died and case.id in self._suspect_cases]
-        cases = [case for case in task.cases if case not in failed]
+        failed_cases = [case for case in task.cases if died and case.id in self._suspect_cases]
+        cases = [case for case in task.cases if case not in failed_cases]
         if died:
             self._suspect_cases.update(case.id for case in cases)
 
-        def solved_with(case: PlannedCase) -> int | str:  # a film starts from the other films of its group
+        def group_key(case: PlannedCase) -> int | str:  # a film starts from the other films of its group
             return case.group if "entrainment_speed" in case.parameters else case.id
 
-        parts = [list(part) for _, part in groupby(cases, solved_with)] if died else [cases]
-        self._returned.extend(replace(task, cases=tuple(part)) for part in parts if part)
+        case_lists = [list(case_list) for _, case_list in groupby(cases, group_key)] if died else [cases]
+        self._returned.extend(replace(task, cases=tuple(case_list)) for case_list in case_lists if case_list)
         self.remaining += len(cases)
-        return failed
+        return failed_cases
 
 
 TaskResults = Generator[list[Outcome], None, None]
@@ -305,7 +305,7 @@ class Workers:
         self._announced = False
 
     @_report_lost_scheduler()
-    def usable(self, busy: bool) -> set[str]:
+    def find_usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all are excluded, or no worker came for too long."""
         connected_workers = set(self._client.nthreads())
         if new_workers := connected_workers - set(self._faults):
@@ -315,28 +315,28 @@ class Workers:
                 self._faults[worker] = ""
                 if version != own_version:
                     self.exclude(worker, f"it has version {version} of contactstudy, not {own_version}")
-        usable = {worker for worker in connected_workers if self._faults.get(worker) == ""}
-        if usable or busy:
+        usable_workers = {worker for worker in connected_workers if self._faults.get(worker) == ""}
+        if usable_workers or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
             self._wait_for_worker(connected_workers)
-        return usable
+        return usable_workers
 
     def exclude(self, worker: str, reason: str) -> None:
         """Give a worker no further task."""
         self._faults[worker] = reason
         self._notify(f"worker {worker} is left out: {reason}")
 
-    def _wait_for_worker(self, present: set[str]) -> None:
+    def _wait_for_worker(self, connected: set[str]) -> None:
         """Inform the user about the lack of workers; raise after the wait, a short wait if all workers are excluded."""
         waiting_time = time.monotonic() - self._last_present
-        excluded = {worker for worker in present if self._faults.get(worker)}
-        if present and excluded == present and waiting_time > min(self._wait, RUN.announce_seconds):
+        excluded = {worker for worker in connected if self._faults.get(worker)}
+        if connected and excluded == connected and waiting_time > min(self._wait, RUN.announce_seconds):
             raise StudyFileError(f"none of the {len(excluded)} workers can be used: {self._faults[min(excluded)]}")
         if waiting_time > self._wait:
-            state = "has answered" if present else "is connected to the dask scheduler"
+            condition = "has answered" if connected else "is connected to the dask scheduler"
             raise StudyFileError(
-                f"no worker {state} after {waiting_time:.0f} s: start workers, or wait longer (--wait SECONDS)"
+                f"no worker {condition} after {waiting_time:.0f} s: start workers, or wait longer (--wait SECONDS)"
             )
         if waiting_time > RUN.announce_seconds and not self._announced:
             self._announced = True
@@ -352,16 +352,16 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
     running: dict[Future[list[Record]], tuple[str, Task, float]] = {}
     try:
         while tasks or running:
-            usable = workers.usable(bool(running))
+            usable_workers = workers.find_usable(bool(running))
             busy = {worker for worker, _, _ in running.values()}
-            for worker in sorted(usable - busy):
+            for worker in sorted(usable_workers - busy):
                 if tasks:
-                    task = tasks.next_task(len(usable))
+                    task = tasks.next_task(len(usable_workers))
                     compressed_task = zlib.compress(dumps((task, solver)))
                     future = client.submit(solve_compressed_task, compressed_task, workers=[worker], pure=False)
                     running[future] = (worker, task, time.monotonic())
                     future.add_done_callback(finished_futures.put)
-            lost_futures = [future for future, (worker, _, _) in running.items() if worker not in usable]
+            lost_futures = [future for future, (worker, _, _) in running.items() if worker not in usable_workers]
             try:
                 future = lost_futures[0] if lost_futures else finished_futures.get(timeout=RUN.poll_seconds)
                 worker, task, start_time = running.pop(future)

@@ -73,7 +73,7 @@ UNDIVIDED = Share()  # A study in one run
 
 
 class Results:
-    """Results that a folder contains now: columns of all intact batches, in memory."""
+    """Current results of a folder: columns of all intact batches, in memory."""
 
     def __init__(self, paths: list[Path]) -> None:
         self.paths: list[Path] = []
@@ -127,9 +127,9 @@ class States:
         is_ok, is_current = stored["status"] == "ok", stored["version"] == package_version()
         is_complete = stored["level"].isin(LEVELS[LEVELS.index(plan.level) :])
         is_absent = stored["status"].isna() | (~is_current & (stored["status"] == "skipped"))
-        obstacles = pd.Series(plan.groups).map(plan.review.reasons)
+        skip_reasons = pd.Series(plan.groups).map(plan.review.reasons)
         conditions, statuses, reasons = zip(
-            (obstacles.notna(), "skipped", obstacles),
+            (skip_reasons.notna(), "skipped", skip_reasons),
             (is_absent, "missing", "; ".join(results.damaged.values())),
             (is_ok & ~is_complete, "stale", stored["level"].map(f"retains {{}}, not {plan.level}".format)),
             (is_ok & ~is_current, "stale", stored["version"].map("solved by version {}".format)),
@@ -237,17 +237,17 @@ class Folder:
         with contextlib.ExitStack() as locks:
             if self.share.count == 1:
                 # Another process that calls `holders` holds the lock for a moment.
-                locks.enter_context(self._hold("run", 0.5))
+                locks.enter_context(self._hold_lock("run", 0.5))
                 for path in self.path.glob("run-*.lock"):
-                    with self._hold(path.stem, 0.0):
+                    with self._hold_lock(path.stem, 0.0):
                         pass
             else:
-                with self._hold("run", RUN.share_seconds):
-                    locks.enter_context(self._hold(self.share.name, 0.0))
+                with self._hold_lock("run", RUN.share_seconds):
+                    locks.enter_context(self._hold_lock(self.share.name, 0.0))
             yield
 
     @contextlib.contextmanager
-    def _hold(self, name: str, seconds: float) -> Iterator[None]:
+    def _hold_lock(self, name: str, seconds: float) -> Iterator[None]:
         """Hold a lock; wait for some seconds."""
         path = self.path / f"{name}.lock"
         if os.path.lexists(path) and not is_regular(path):
@@ -309,7 +309,7 @@ class Folder:
         return target
 
     def results(self) -> Results:
-        """Results that the folder contains now."""
+        """Read the current results of the folder."""
         return Results(batch_paths(self.batches))
 
     def states(self, plan: Plan) -> States:

@@ -66,10 +66,10 @@ class Parameter(NamedTuple):
     units: str  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
-    check: Callable[[str, object], Any] = check_number  # from name and value to the value for identities, or raises
+    check: Callable[[str, object], Any] = check_number  # (name, value): returns the value for identities, or raises
     words: tuple[str, ...] = ()  # allowed words; the first is the default unless `absent` has another meaning
     consumer: Callable[..., Any] | None = None  # function with a keyword of this name, whose default is the default
-    fallback: Any = None  # default without a consumer; None: required or optional
+    fallback: Any = None  # default of a parameter without a consumer; None: no default
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: a result's long name, or `name`
 
@@ -116,8 +116,8 @@ _PARAMETERS = (
         "model of the free ends",
         words=MODELS,
         label="model of the free ends",
-        note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
-        "only), the published scheme with one pair of images",
+        note="`exact`; for comparison `mirror` and `mirror-factor`, usual approximations, and `single-mirror` (two "
+        "ends only), the published scheme with one pair of images",
     ),
     Parameter("young", "Pa", "Young's modulus of the body", "required", label="Young's modulus"),
     Parameter("poisson", "1", "Poisson's ratio of the body", "required", label="Poisson's ratio"),
@@ -143,7 +143,7 @@ _PARAMETERS = (
         "approach at mid-length, from first contact without tilt, relative to reference_depth",
         "or `load`",
         consumer=Case,
-        note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
+        note="determines load and a: give `end_distance`, but no uniform cells or stress points, which scale with a",
     ),
     Parameter("friction", "1", "coefficient of friction", consumer=Case),
     Parameter("profile", "", "roller profile", check=profile_table, fallback={"kind": "cylinder"}),
@@ -186,7 +186,7 @@ _PARAMETERS = (
         "",
         "motion of the roller against the body",
         words=("sliding", "shift", "rolling"),
-        note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
+        note="`sliding`: full sliding; `shift`: one shift from rest; `rolling`: steady; the last two stick and slip",
     ),
     Parameter(
         "longitudinal_creepage",
@@ -195,7 +195,7 @@ _PARAMETERS = (
         "0",
         note="rolling only; or `force_y`",
     ),
-    Parameter("lateral_creepage", "1", "the same along x", "0", note="rolling only; or `force_x`"),
+    Parameter("lateral_creepage", "1", "the same velocity ratio along x", "0", note="rolling only; or `force_x`"),
     Parameter(
         "spin", "rad/m", "angular velocity about z over the rolling speed", "0", note="rolling only; or `moment_z`"
     ),
@@ -227,9 +227,9 @@ _PARAMETERS = (
     Parameter(
         "accuracy",
         "1",
-        "error over the peak to which peak, end pressures and end loads are settled",
+        "largest error of peak, end pressures and end loads, over the peak",
         f"{ACCURACY:g}",
-        note="columns are refined to it; a case with parameters of uniform cells has none",
+        note="the solver refines the columns accordingly; left out with parameters of uniform cells",
     ),
     Parameter("cells_x", "1", "cells per half-width a along x", consumer=choose_grid, note="uniform cells"),
     Parameter("cells_y", "1", "cells per half-width a along y", consumer=choose_grid, note="uniform cells"),
@@ -238,7 +238,7 @@ _PARAMETERS = (
         "1",
         "half-width of the window in y over a",
         consumer=choose_grid,
-        note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
+        note="for uniform cells; a default window grows with the contact, a given window does not",
     ),
     Parameter(
         "margin",
@@ -303,7 +303,7 @@ def identity_value(name: str, value: Any) -> Any:
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` without defaults and without a profile's name."""
-    return {name: part for name, value in values.items() if (part := identity_value(name, value)) is not None}
+    return {name: entry for name, value in values.items() if (entry := identity_value(name, value)) is not None}
 
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:

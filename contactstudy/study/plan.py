@@ -1,7 +1,6 @@
 """Plan of a study: its cases in a stable order, their identities, groups and positions among its dimensions.
 
-Properties are computed at first use: a million cases have identities and groups as arrays; the parameters of a case
-follow from its number.
+Properties are computed at first use; identities and groups are arrays, and a case's parameters follow from its number.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of t
     {"tilt", "load_offset", "profile", "body_edge", "accuracy", "tolerance", "stresses", *GROUPED_PARAMETERS}
 )
 
-Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the parameters of each step
+Axis = tuple[dict[str, Any], ...]  # One factor of a study's product of parameters: the parameters of each step
 
 
 @dataclass(frozen=True)
@@ -62,9 +61,9 @@ def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
     dims, shape, labels = [], [], {}
     for axis in axes:
         columns = {name: [label(entry[name]) for entry in axis] for name in axis[0]}
-        distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
-        dim = distinct[0] if distinct else "_and_".join(columns)
-        if not distinct:
+        distinct_names = [name for name, column in columns.items() if len(set(column)) == len(column)]
+        dim = distinct_names[0] if distinct_names else "_and_".join(columns)
+        if not distinct_names:
             labels[dim] = (dim, list(range(len(axis))))
         for name, column in columns.items():
             labels[name] = (dim, column)
@@ -78,15 +77,15 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> Cube:
     names = dict.fromkeys(name for case in cases for name in case)
     columns = {name: [label(case.get(name)) for case in cases] for name in names}
     steps = {name: {value: step for step, value in enumerate(dict.fromkeys(columns[name]))} for name in names}
-    varying = {name: step_of for name, step_of in steps.items() if len(step_of) > 1}
-    shape = tuple(map(len, varying.values()))
-    complete = not any(None in step_of for step_of in varying.values())
-    if varying and complete and math.prod(shape) <= MAX_CUBE_CELLS * len(cases):
-        multi_index = tuple([step_of[value] for value in columns[name]] for name, step_of in varying.items())
+    steps_of = {name: numbers for name, numbers in steps.items() if len(numbers) > 1}
+    shape = tuple(map(len, steps_of.values()))
+    is_complete = not any(None in numbers for numbers in steps_of.values())
+    if steps_of and is_complete and math.prod(shape) <= MAX_CUBE_CELLS * len(cases):
+        multi_index = tuple([numbers[value] for value in columns[name]] for name, numbers in steps_of.items())
         indices = np.ravel_multi_index(multi_index, shape)
         if len(np.unique(indices)) == len(cases):
-            return Cube(tuple(varying), shape, {name: (name, list(varying[name])) for name in varying}, indices)
-    labels = {"case": ("case", list(range(len(cases))))} | {name: ("case", columns[name]) for name in varying}
+            return Cube(tuple(steps_of), shape, {name: (name, list(steps_of[name])) for name in steps_of}, indices)
+    labels = {"case": ("case", list(range(len(cases))))} | {name: ("case", columns[name]) for name in steps_of}
     return Cube(("case",), (len(cases),), labels, np.arange(len(cases)))
 
 
@@ -190,21 +189,21 @@ class Plan(Sequence[PlannedCase]):
         return table.reshape((*self.cube.shape, *values.shape[1:]))
 
     def _fragments(self) -> Iterator[tuple[str, ...]]:
-        """Parts of each case's canonical JSON, sorted by name; the part of a default is empty."""
-        product = self.chosen[self.chosen < self.products]
+        """Parts of each case's canonical JSON, sorted by name; a default has an empty part."""
+        product_indices = self.chosen[self.chosen < self.products]
         names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
         for name, value in add_default_accuracy({**self.base, **dict.fromkeys(names)}).items():
             if name not in names:
                 columns[name] = repeat(identity_fragment(name, value))
-        steps = np.unravel_index(product, self.shape) if self.shape else ()
+        steps = np.unravel_index(product_indices, self.shape) if self.shape else ()
         for axis, column in zip(self.axes, steps, strict=True):
             for name in axis[0]:
                 table = [identity_fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
-        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product.size)
-        for product_index in self.chosen[len(product) :]:
-            values = add_default_accuracy({**self.base, **self.explicit[product_index - self.products]})
+        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product_indices.size)
+        for index in self.chosen[product_indices.size :]:
+            values = add_default_accuracy({**self.base, **self.explicit[index - self.products]})
             yield tuple(identity_fragment(name, values[name]) for name in sorted(values))
 
     @cached_property
@@ -212,15 +211,15 @@ class Plan(Sequence[PlannedCase]):
         """Identities of the cases."""
         return np.fromiter(map(hash_fragments, self._fragments()), dtype="S64", count=len(self))
 
-    def _classify(self, local: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
-        """Class of each case: cases of a class differ in `local` parameters only, or not at all with a `fixing` one."""
-        local_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (local, fixing))
+    def _classify(self, varying: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
+        """Class of each case: `varying` parameters may differ in a class, but not with a `fixing` parameter."""
+        varying_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (varying, fixing))
 
-        def key(fragments: tuple[str, ...]) -> int:
-            ignored = () if any(text.startswith(fixing_starts) for text in fragments) else local_starts
+        def compute_key(fragments: tuple[str, ...]) -> int:
+            ignored = () if any(text.startswith(fixing_starts) for text in fragments) else varying_starts
             return hash(tuple(text for text in fragments if text and not text.startswith(ignored)))
 
-        keys = np.fromiter(map(key, self._fragments()), dtype=np.int64, count=len(self))
+        keys = np.fromiter(map(compute_key, self._fragments()), dtype=np.int64, count=len(self))
         return np.asarray(pd.factorize(keys)[0], dtype=np.int64)
 
     @cached_property

@@ -28,15 +28,15 @@ from contactstudy.profiles.base import check_drop, describe_profile, local_radiu
 Table = dict[str, Any]
 MAX_NESTING = 16  # Largest depth of profiles within profiles
 MAX_POINTS = 50_000  # Largest number of points of a measured profile
-DESIGN = ("design_pressure", "design_load")  # determine the amplitude: Pa, and N on the roller
-POINTS = ("positions", "drops")  # Fields that contain lists of lengths
-NESTED = ("left", "right", "profile")  # Fields that contain a profile
+DESIGN_KEYS = ("design_pressure", "design_load")  # determine the amplitude: Pa, and N on the roller
+POINT_KEYS = ("positions", "drops")  # Fields that contain lists of lengths
+NESTED_KEYS = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
 MIN_MAGNITUDE = 1 / checks.MAX_MAGNITUDE
 USER_KIND = "user"  # Kind of a profile of a user's class
 USER_KEYS = ("class", "values", "content")  # class name, values, identity of the object
-LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # metres, of which drops enter the digest; a profile may be invalid for some
+DIGEST_LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # roller lengths, metres, whose drops enter the digest
 MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 DIGITS = 12  # Significant digits of a number in a study, beyond rounding
@@ -50,10 +50,10 @@ def round_digits(value: float) -> float:
 
 def check_number(name: str, value: object) -> float:
     """Return a finite number of limited size, rounded."""
-    finite = checks.finite(name, value)
-    if 0 < abs(finite) < MIN_MAGNITUDE:
+    number = checks.finite(name, value)
+    if 0 < abs(number) < MIN_MAGNITUDE:
         raise InvalidInputError(name, value, f"0, or of a size from {MIN_MAGNITUDE:g} on", "units are SI")
-    return round_digits(finite)
+    return round_digits(number)
 
 
 class Dimensions(NamedTuple):
@@ -111,7 +111,7 @@ class ProfileKind:
     """Class of a profile, whose fields are the keys of its table."""
 
     profile_class: Any  # the dataclass
-    design_fields: tuple[str, ...] = ()  # fields that follow from DESIGN by the class' for_pressure or for_load
+    design_fields: tuple[str, ...] = ()  # fields that follow from DESIGN_KEYS by the class' for_pressure or for_load
     radius_multiples: Mapping[str, float] = field(default_factory=dict)  # defaults in multiples of the roller's radius
 
     @cached_property
@@ -123,20 +123,20 @@ class ProfileKind:
     def read(self, name: str, table: Mapping[str, Any], depth: int) -> Table:
         """Check keys and values of a parameter's table without `kind` and `name`; omit defaults."""
         is_measured = self.profile_class is profiles.Measured
-        keys = [*self.defaults, *(DESIGN if self.design_fields else ()), *(FILE_OPTIONS if is_measured else ())]
+        keys = [*self.defaults, *(DESIGN_KEYS if self.design_fields else ()), *(FILE_OPTIONS if is_measured else ())]
         for key in table:
             checks.known_name(f"{name} key", str(key), [*keys, "kind", "name"])
         stated_entries = {key: entry for key, entry in table.items() if entry is not None}
         if is_measured:
             stated_entries = _read_points(name, stated_entries)
         values = {key: _check_value(name, key, entry, depth) for key, entry in stated_entries.items()}
-        design_count = sum(key in values for key in DESIGN)
+        design_count = sum(key in values for key in DESIGN_KEYS)
         if self.design_fields and design_count + any(key in values for key in self.design_fields) != 1:
-            choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
+            choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN_KEYS)}"
             raise InvalidInputError(name, dict(table), f"given with {choice}")
         for key, default in self.defaults.items():
-            follows = design_count and key in self.design_fields
-            if default is MISSING and key not in values and not follows:
+            follows_from_design = design_count and key in self.design_fields
+            if default is MISSING and key not in values and not follows_from_design:
                 raise InvalidInputError(name, dict(table), f"given with {key}")
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
@@ -148,7 +148,7 @@ class ProfileKind:
                 values[key] = build_profile(name, value, sizes)
             elif key == "terms":
                 values[key] = tuple(build_profile(name, term, sizes) for term in value)
-            elif key not in DESIGN:
+            elif key not in DESIGN_KEYS:
                 values[key] = value
         create, scales = self.profile_class, {"radius": sizes.radius, "modulus": sizes.modulus}
         if "design_pressure" in table:
@@ -162,13 +162,13 @@ class ProfileKind:
 
 def _check_value(name: str, key: str, value: object, depth: int) -> Any:
     """Value of a table after its check: a nested profile, a list of profiles or lengths, or a number."""
-    if key in NESTED:
+    if key in NESTED_KEYS:
         return _check_nested_table(name, value, depth)
     if key == "terms":
         checks.instance(f"{name}.terms", value, (list, tuple), "a list of profiles")
         assert isinstance(value, Sequence)
         return [_check_nested_table(name, term, depth) for term in value]
-    if key not in POINTS:
+    if key not in POINT_KEYS:
         return check_number(f"{name}.{key}", value)
     points = checks.coordinates(f"{name}.{key}", value, "metres").tolist()
     if len(points) > MAX_POINTS:
@@ -189,7 +189,7 @@ def _read_points(name: str, table: Table) -> Table:
             if key in table:
                 raise InvalidInputError(f"{name}.{key}", table[key], "left out: it belongs to a file")
         return table
-    if any(key in table for key in POINTS):
+    if any(key in table for key in POINT_KEYS):
         raise InvalidInputError(name, sorted(table), "given with file, or with positions and drops")
     checks.instance(f"{name}.file", table["file"], str, "the path of a CSV or netCDF file")
     for flag in FILE_FLAGS:
@@ -230,7 +230,7 @@ def profile_table(name: str, value: object, depth: int = 0, kinds: Sequence[str]
     if is_dataclass(value) and type(value) in KIND_OF:
         value = {"kind": KIND_OF[type(value)], **{entry.name: getattr(value, entry.name) for entry in fields(value)}}
     elif USER_KIND in kinds and isinstance(value, Profile) and not isinstance(value, type):
-        return _register(value)
+        return _register_profile(value)
     if isinstance(value, str):
         value = {"kind": value}
     if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
@@ -307,11 +307,11 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
     return ", ".join([kind, *texts])
 
 
-def _register(profile: Profile) -> dict[str, Any]:
+def _register_profile(profile: Profile) -> dict[str, Any]:
     """Add a copy of a user's profile to this process' registry; return its table."""
     name = type(profile).__qualname__.split("<locals>.")[-1]
-    values = _values(profile)
-    content = _digest([name, values, _behaviour(profile)])
+    values = _read_values(profile)
+    content = _digest([name, values, _sample_profile(profile)])
     if content not in REGISTRY:
         REGISTRY[content] = _copy_by_pickle(profile, name, content)
     has_default_repr = type(profile).__repr__ is object.__repr__
@@ -333,7 +333,7 @@ def user_profiles(parameters: Any) -> dict[str, Profile]:
     return profiles
 
 
-def _values(profile: Profile, name: str = "profile") -> dict[str, Any]:
+def _read_values(profile: Profile, name: str = "profile") -> dict[str, Any]:
     """JSON values of the fields of a dataclass, or of the attributes of another object."""
     kind: Any = type(profile)
     if is_dataclass(kind):
@@ -359,16 +359,16 @@ def _json_value(name: str, value: object) -> Any:
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
         return {key: _json_value(f"{name}.{key}", entry) for key, entry in value.items()}
     if isinstance(value, Profile):
-        return {"class": type(value).__qualname__, **_values(value, name)}
+        return {"class": type(value).__qualname__, **_read_values(value, name)}
     allowed = f"a number, a text, a list or a profile, which identify the profile, not {type(value).__name__}"
     raise InvalidInputError(name, value, allowed, REMEDY)
 
 
-def _behaviour(profile: Profile) -> list[Any]:
+def _sample_profile(profile: Profile) -> list[Any]:
     """Return drops and radii for every valid length, in 9 digits, because processors differ in rounding."""
     drops_and_radii: list[Any] = []
     last_error: Exception | None = None
-    for length in LENGTHS:
+    for length in DIGEST_LENGTHS:
         x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 1001))
         try:
             drops, radii = check_drop(profile, x, length), local_radius(profile, x, length, length)
@@ -378,7 +378,7 @@ def _behaviour(profile: Profile) -> list[Any]:
             continue
         drops_and_radii.append([f"{value:.9g}" for value in [*(drops + 0.0), *radii]])
     if not any(drops_and_radii):
-        lengths = ", ".join(f"{length:g}" for length in LENGTHS)
+        lengths = ", ".join(f"{length:g}" for length in DIGEST_LENGTHS)
         allowed = f"an object whose drop(x, length) is valid for a roller of {lengths} m, at least one of them"
         raise InvalidInputError("profile", profile, allowed, str(last_error))
     return drops_and_radii
@@ -398,7 +398,7 @@ def _copy_by_pickle(profile: Profile, name: str, content: str) -> Profile:
     requirement = "an object that can be pickled for workers ({})"
     try:
         profile_copy: Profile = pickle.loads(cloudpickle.dumps(profile))
-        content_of_copy = _digest([name, _values(profile_copy), _behaviour(profile_copy)])
+        content_of_copy = _digest([name, _read_values(profile_copy), _sample_profile(profile_copy)])
     except Exception as error:  # a user's class may raise anything
         reason = f"{type(error).__name__}: {error}"
         raise InvalidInputError("profile", name, requirement.format(reason), REMEDY) from error

@@ -99,11 +99,11 @@ class Progress:
     """Bar, if `visible`, and log of one run; the log file grows from run to run."""
 
     def __init__(self, path: Path, *, visible: bool = True) -> None:
-        self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
-        self._messages_shown = visible
+        self._shows_bar = visible and sys.stderr.isatty() and not os.environ.get("CI")
+        self._shows_messages = visible
         self._bar: Any = None
         self._count = self._total = 0
-        self._began = time.monotonic()
+        self._start_time = time.monotonic()
         self.remarks: list[str] = []
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         with checks.convert_os_errors(f"write {path}"):
@@ -130,7 +130,7 @@ class Progress:
     def notify(self, message: str) -> None:
         """Write a line to the log and, if progress is visible, to the screen; safe in a handler of signals."""
         self.log(message)
-        if self._messages_shown:
+        if self._shows_messages:
             with contextlib.suppress(OSError, ValueError):
                 os.write(sys.stderr.fileno(), f"contactstudy: {message}\n".encode())
 
@@ -142,9 +142,9 @@ class Progress:
 
     def begin(self, cases: int, total: int) -> None:
         """Log the number of cases to solve."""
-        self._total, self._began = cases, time.monotonic()
+        self._total, self._start_time = cases, time.monotonic()
         self.log(f"process {os.getpid()}: {cases} of {total} cases to solve")
-        if self._bar_shown and cases:
+        if self._shows_bar and cases:
             from tqdm import tqdm
 
             self._bar = tqdm(
@@ -164,7 +164,7 @@ class Progress:
 
     def show(self) -> None:
         """Log and show the number of finished cases and the time left at the present speed."""
-        remaining_seconds = (time.monotonic() - self._began) * (self._total - self._count) / max(self._count, 1)
+        remaining_seconds = (time.monotonic() - self._start_time) * (self._total - self._count) / max(self._count, 1)
         forecast = f"about {format_duration(remaining_seconds)} left" if self._count < self._total else "all done"
         self.log(f"{self._count}/{self._total} cases, {forecast}")
         if self._bar is not None:
@@ -174,16 +174,16 @@ class Progress:
 
 @contextlib.contextmanager
 def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
-    """End the block at the first Ctrl-C, SIGTERM or SIGHUP; without it workers and unfinished files would remain."""
+    """End the block at the first Ctrl-C, SIGTERM or SIGHUP, so that no workers and unfinished files remain."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+    signals = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
     # A process under nohup continues to ignore SIGHUP.
-    previous = {number: handler for number in numbers if (handler := signal.getsignal(number)) != signal.SIG_IGN}
+    handlers = {number: handler for number in signals if (handler := signal.getsignal(number)) != signal.SIG_IGN}
 
     def handle(signal_number: int, frame: FrameType | None) -> None:
-        for handled_number in previous:
+        for handled_number in handlers:
             signal.signal(handled_number, signal.SIG_IGN)
         notify("interrupted: ending the workers ...")
         if signal_number == signal.SIGINT:
@@ -192,12 +192,12 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         interrupt.signal_number = signal_number
         raise interrupt
 
-    for signal_number in previous:
+    for signal_number in handlers:
         signal.signal(signal_number, handle)
     try:
         yield
     finally:
-        for signal_number, handler in previous.items():
+        for signal_number, handler in handlers.items():
             signal.signal(signal_number, handler)
 
 
@@ -216,7 +216,7 @@ def run_study(
 ) -> RunReport:
     """Solve every case of a study that is not solved yet.
 
-    A run may be interrupted in any way and called again: finished cases are not solved twice, except films: those that
+    A run may be interrupted in any way and called again: finished cases are not solved twice, except films. Films that
     differ only in speed are solved together, and another speed may change them within their stated errors. A script
     needs the guard ``if __name__ == "__main__":``, because the worker processes import the script.
 
@@ -252,7 +252,7 @@ def run_study(
     LockedError
         If another process runs the study, or this share of it, in the folder.
     StoreError
-        If the disk or a permission is in the way.
+        If a file or folder cannot be written.
     KeyboardInterrupt
         After Ctrl-C, SIGTERM or SIGHUP, when workers have ended; the message contains the number of finished cases.
 
@@ -315,7 +315,7 @@ def run_study(
             message = f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}"
             message += "; run again to go on"
             log.log(message)
-            # The message replaces the traceback: the interrupted line of the solver is of no interest.
+            # The message replaces the traceback, which would show an arbitrary line of the solver.
             interrupt.args = (message,)
             raise interrupt.with_traceback(None) from None
         except BaseException as error:
@@ -350,20 +350,19 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
         index for index in states.indices("stale") if not states.usable[index]
     }
     unsolved &= set(selected.tolist())
-    members: dict[tuple[int, int], list[int]] = {}
+    cases_of_group: dict[tuple[int, int], list[int]] = {}
     for index in unique.tolist():
-        members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
+        cases_of_group.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
 
-    groups = [members[key] for key in sorted(members)]
+    groups = [cases_of_group[key] for key in sorted(cases_of_group)]
     if share.count > 1:
-        # A piece contains consecutive groups, few enough that every share receives several pieces.
-        size = max(1, len(groups) // (RUN.turns * share.count))
+        # A piece contains consecutive groups; every share receives several pieces.
+        size = max(1, len(groups) // (RUN.pieces_per_share * share.count))
         groups = [group for index, group in enumerate(groups) if index // size % share.count == share.number - 1]
     unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
-            # A film starts from the film of the next lower speed, whose relative errors bound those of a thicker film:
-            # solve all cases of a group or none.
+            # A film starts from the film of the next lower speed: solve all cases of a group or none.
             films = sorted(group, key=lambda index: abs(plan.values(index)["entrainment_speed"]))
             unsolved_groups.append([] if unsolved.isdisjoint(group) else films)
         else:

@@ -69,7 +69,7 @@ class Outcome(NamedTuple):
 @cache
 def run_context() -> dict[str, Any]:
     """Versions and commit of this process."""
-    result: dict[str, Any] = {**versions()}
+    context: dict[str, Any] = {**versions()}
     source = Path(__file__)
     git = ["git", "-C", str(source.parent)]
     with contextlib.suppress(OSError, subprocess.SubprocessError):
@@ -77,8 +77,8 @@ def run_context() -> dict[str, Any]:
         subprocess.run([*git, "ls-files", "--error-unmatch", source.name], capture_output=True, check=True, timeout=10)
         describe_command = [*git, "describe", "--always", "--dirty", "--abbrev=40"]
         commit = subprocess.run(describe_command, capture_output=True, check=True, timeout=10, text=True)
-        result["commit"] = commit.stdout.strip()
-    return result
+        context["commit"] = commit.stdout.strip()
+    return context
 
 
 @contextlib.contextmanager
@@ -87,34 +87,34 @@ def single_threaded() -> Iterator[None]:
     import pyfftw
     from threadpoolctl import threadpool_limits
 
-    previous, pyfftw.config.NUM_THREADS = pyfftw.config.NUM_THREADS, 1
+    previous_count, pyfftw.config.NUM_THREADS = pyfftw.config.NUM_THREADS, 1
     try:
         with threadpool_limits(limits=1):
             yield
     finally:
-        pyfftw.config.NUM_THREADS = previous
+        pyfftw.config.NUM_THREADS = previous_count
 
 
 def solve_compressed_task(task_and_solver: bytes) -> list[Record]:
-    """Solve a compressed task: a scheduler stores 70 bytes per case, 1500 as objects."""
+    """Solve a compressed task: a scheduler stores 70 bytes per case, instead of 1500 for objects."""
     return solve_task(*pickle.loads(zlib.decompress(task_and_solver)))
 
 
 def solve_task(task: Task, solver: Solver | None = None) -> list[Record]:
     """Solve the cases of a task, write them in batches, return their records; defects of the program are raised."""
-    path, text = task.lock
+    path, expected_lock = task.lock
     try:
         lock = Path(path).read_text(encoding="utf-8") if path else ""
     except (OSError, ValueError) as error:
         lock = f"{type(error).__name__}: {error}"
-    if lock != text:
+    if lock != expected_lock:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
     REGISTRY.update(task.profiles)
     unsaved_batches: list[Batch] = []
     records: list[Record] = []
 
-    def flush() -> None:
+    def write_unsaved() -> None:
         batches = sorted(unsaved_batches, key=attrgetter("structure"))
         unsaved_batches.clear()
         for _, group in groupby(batches, key=attrgetter("structure")):
@@ -130,14 +130,14 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Record]:
                     unsaved_batches.append(batch)
                     is_full = bool(batch.arrays) and sum(entry.nbytes for entry in unsaved_batches) > RUN.buffer_bytes
                     if is_full or time.monotonic() - last_save > RUN.save_seconds:
-                        flush()
+                        write_unsaved()
                         last_save = time.monotonic()
     except StoreError:
         raise
     except BaseException:
-        flush()
+        write_unsaved()
         raise
-    flush()
+    write_unsaved()
     return records
 
 
@@ -146,7 +146,7 @@ def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) ->
     shares_contact = solver is None and len(cases) > 1 and task.level == "summary"
     shared_batch: Batch | None = None
     film: xr.Dataset | None = None
-    # Stresses under the traction are evaluated together with those under the pressure, which all frictions share.
+    # Frictionless cases last: the stresses of pressure, which all cases share, are evaluated with those of traction.
     for case in sorted(cases, key=lambda case: case.parameters.get("friction", 0.0) == 0.0):
         start_time = time.perf_counter()
         try:
@@ -209,7 +209,7 @@ def _solve_case(
         return (solver or solve)(setup.case, grid, **setup.options)
 
     try:
-        with warnings.catch_warnings(record=True) as caught:
+        with warnings.catch_warnings(record=True) as caught_warnings:
             warnings.simplefilter("always")
             dataset = solve_in_first_window(setup.grids, solve_on)
             numbers = case_numbers(dataset) | dict(shakedown_summary(dataset).variables)
@@ -225,6 +225,6 @@ def _solve_case(
         e_over_a = setup.case.roller_start / float(numbers["hertz_half_width"])
     for name, value in (("e_over_a", e_over_a), ("gamma", setup.gamma)):
         numbers[name] = xr.Variable((), float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
-    messages = (str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
+    messages = (str(entry.message) for entry in caught_warnings if entry.category is not MagnitudeWarning)
     batch = batch_of_case(task, case, "ok", warnings_of_case=messages, numbers=numbers)
     return add_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset

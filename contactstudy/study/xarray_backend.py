@@ -34,5 +34,5 @@ class StudyBackend(BackendEntrypoint):
         """Open a study; for `cells` see :func:`contactstudy.open_study`."""
         from contactstudy.study.dataset import study_dataset
 
-        opened = study_dataset(filename_or_obj, cells=cells)
-        return opened if drop_variables is None else opened.drop_vars(drop_variables, errors="ignore")
+        dataset = study_dataset(filename_or_obj, cells=cells)
+        return dataset if drop_variables is None else dataset.drop_vars(drop_variables, errors="ignore")

@@ -17,8 +17,7 @@ Sources, by the names used in the docstrings:
 
 Names and formulas repeat the package's on purpose: a reference must not call the code under test. Axes and signs are
 the package's: `z` into the body, stress positive in tension, pressure positive in compression,
-traction ``q = f p`` drags the body's surface along ``+y``. Stresses are returned as a dictionary with the keys of
-`COMPONENTS`.
+traction ``q = f p`` drags the body's surface along ``+y``. Stresses are dictionaries with the keys `COMPONENTS`.
 """
 
 from __future__ import annotations
@@ -85,11 +84,11 @@ def hertz_ellipse(load: float, long_radius: float, short_radius: float, modulus:
     return EllipticContact(long_axis, short_axis, float(peak), float(peak * short_axis * k / modulus))
 
 
-def carter_traction(y: FloatArray, stick: float) -> FloatArray:
+def carter_traction(y: FloatArray, stick_width: float) -> FloatArray:
     """Traction over ``f p0`` at distances from the middle over the half-width, rolling along +y (Johnson 8.45)."""
-    stick_centre = 1 - stick
+    stick_centre = 1 - stick_width
     sliding = np.sqrt(np.maximum(1 - y**2, 0))
-    return np.asarray(sliding - stick * np.sqrt(np.maximum(1 - ((y - stick_centre) / stick) ** 2, 0)))
+    return np.asarray(sliding - stick_width * np.sqrt(np.maximum(1 - ((y - stick_centre) / stick_width) ** 2, 0)))
 
 
 def mindlin_shift(fraction: float, load: float, friction: float, radius: float, shear: float, poisson: float) -> float:
@@ -149,9 +148,12 @@ def point_load(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, poisson: float, normal: float = 1.0, tangential: float = 0.0
 ) -> Stress:
     """Stresses under a point load on a half-space: Boussinesq (`normal`) and Cerruti (`tangential`, along y)."""
-    xs, ys, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(x, y, z))
-    by_p, by_q = potential_stresses(xs, ys, zs, zs, poisson)
-    return {c: np.asarray(normal * p + tangential * q) for c, p, q in zip(COMPONENTS, by_p, by_q, strict=True)}
+    xs, ys, zs = (np.asarray(component, dtype=float) for component in np.broadcast_arrays(x, y, z))
+    unit_p, unit_q = potential_stresses(xs, ys, zs, zs, poisson)
+    return {
+        component: np.asarray(normal * p + tangential * q)
+        for component, p, q in zip(COMPONENTS, unit_p, unit_q, strict=True)
+    }
 
 
 def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: float, modulus: float) -> FloatArray:
@@ -204,9 +206,12 @@ def hertz_circle(
     angle, weight = 0.5 * np.pi * (angle + 1), 0.5 * np.pi * weight
     t = -a * np.exp(1j * angle)
     source = np.pi * max_pressure / (2 * a) * (a**2 - t**2) * (1j * t) * weight
-    xs, ys, zs = (np.asarray(c, dtype=float)[..., None] for c in np.broadcast_arrays(x, y, z))
-    by_p, by_q = potential_stresses(xs, ys, zs, zs + 1j * t, poisson)
-    return {c: np.asarray(((p + friction * q) @ source).real) for c, p, q in zip(COMPONENTS, by_p, by_q, strict=True)}
+    xs, ys, zs = (np.asarray(component, dtype=float)[..., None] for component in np.broadcast_arrays(x, y, z))
+    unit_p, unit_q = potential_stresses(xs, ys, zs, zs + 1j * t, poisson)
+    return {
+        component: np.asarray(((p + friction * q) @ source).real)
+        for component, p, q in zip(COMPONENTS, unit_p, unit_q, strict=True)
+    }
 
 
 def hertz_circle_axis(
@@ -265,32 +270,32 @@ def rectangle_in_half_plane(
     node, weight = np.polynomial.legendre.leggauss(400)
     kappa = 3 - 4 * poisson
     point = (xs + 1j * zs).ravel()[:, None]
-    slope, curvature, second = (np.zeros(point.size, np.complex128) for _ in range(3))
+    slope, curvature, second_slope = (np.zeros(point.size, np.complex128) for _ in range(3))
     for normal, edge in (((1, 0), x_range[1]), ((-1, 0), x_range[0]), ((0, 1), z_range[1]), ((0, -1), z_range[0])):
         low, high = z_range if normal[0] else x_range
         position = low + 0.5 * (high - low) * (1 + node)
         source = edge + 1j * position if normal[0] else position + 1j * edge
-        pull = (misfit[0] * normal[0] + misfit[3] * normal[1]) + 1j * (misfit[3] * normal[0] + misfit[2] * normal[1])
-        force = pull / (2 * np.pi * (1 + kappa)) * 0.5 * (high - low) * weight
+        density = (misfit[0] * normal[0] + misfit[3] * normal[1]) + 1j * (misfit[3] * normal[0] + misfit[2] * normal[1])
+        force = density / (2 * np.pi * (1 + kappa)) * 0.5 * (high - low) * weight
         conjugate, mirror = np.conj(force), np.conj(source)
         # In the whole plane phi = -F ln(w - w0), psi = kappa F* ln(w - w0) + F w0* / (w - w0).
-        to_source, to_mirror = point - source, point - mirror
-        slope += (-force / to_source).sum(axis=1)
-        curvature += (force / to_source**2).sum(axis=1)
-        second += (kappa * conjugate / to_source - force * mirror / to_source**2).sum(axis=1)
+        source_offset, mirror_offset = point - source, point - mirror
+        slope += (-force / source_offset).sum(axis=1)
+        curvature += (force / source_offset**2).sum(axis=1)
+        second_slope += (kappa * conjugate / source_offset - force * mirror / source_offset**2).sum(axis=1)
         # Potentials of the images; the bar conjugates the constants of a function.
-        of_phi = -conjugate / to_mirror, conjugate / to_mirror**2, -2 * conjugate / to_mirror**3
-        of_psi = (
-            kappa * force / to_mirror - conjugate * source / to_mirror**2,
-            -kappa * force / to_mirror**2 + 2 * conjugate * source / to_mirror**3,
+        phi_terms = -conjugate / mirror_offset, conjugate / mirror_offset**2, -2 * conjugate / mirror_offset**3
+        psi_terms = (
+            kappa * force / mirror_offset - conjugate * source / mirror_offset**2,
+            -kappa * force / mirror_offset**2 + 2 * conjugate * source / mirror_offset**3,
         )
-        image = -(of_phi[0] + point * of_phi[1]) - of_psi[0]
-        image_curvature = -(2 * of_phi[1] + point * of_phi[2]) - of_psi[1]
+        image = -(phi_terms[0] + point * phi_terms[1]) - psi_terms[0]
+        image_curvature = -(2 * phi_terms[1] + point * phi_terms[2]) - psi_terms[1]
         slope += image.sum(axis=1)
         curvature += image_curvature.sum(axis=1)
-        second += (-of_phi[0] - image - point * image_curvature).sum(axis=1)
+        second_slope += (-phi_terms[0] - image - point * image_curvature).sum(axis=1)
     normal_sum = 4 * slope.real
-    difference = 2 * (np.conj(point[:, 0]) * curvature + second)
+    difference = 2 * (np.conj(point[:, 0]) * curvature + second_slope)
     xx, zz, xz = 0.5 * (normal_sum - difference.real), 0.5 * (normal_sum + difference.real), 0.5 * difference.imag
     is_inside = (xs > x_range[0]) & (xs < x_range[1]) & (zs > z_range[0]) & (zs < z_range[1])
     stress = np.stack([xx, poisson * (xx + zz), zz, xz]).reshape(4, *xs.shape)
@@ -319,10 +324,10 @@ def fast_line() -> tuple[float, float]:
     Heat flows into the depth only (Blok 1937, Jaeger 1942).
     """
 
-    def rise(behind: float) -> float:
-        # The substitution s = behind - t**2 removes the singular root
-        integral = integrate.quad(lambda t: 2 * np.sqrt(max(1 - (behind - t**2) ** 2, 0.0)), 0.0, np.sqrt(1 + behind))
+    def compute_rise(lag: float) -> float:
+        # The substitution s = lag - t**2 removes the singular root
+        integral = integrate.quad(lambda t: 2 * np.sqrt(max(1 - (lag - t**2) ** 2, 0.0)), 0.0, np.sqrt(1 + lag))
         return float(integral[0])
 
-    maximum = optimize.minimize_scalar(lambda behind: -rise(behind), bounds=(0.3, 0.95), method="bounded")
+    maximum = optimize.minimize_scalar(lambda lag: -compute_rise(lag), bounds=(0.3, 0.95), method="bounded")
     return -float(maximum.fun), float(maximum.x)

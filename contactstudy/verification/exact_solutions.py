@@ -41,7 +41,7 @@ def _half_space() -> HalfSpace:
     return HalfSpace(material=unit_material(POISSON))
 
 
-def _finite(length: float) -> FiniteLengthSpace:
+def _finite_body(length: float) -> FiniteLengthSpace:
     """Body of the unit material with two free ends."""
     return FiniteLengthSpace(length=length, material=unit_material(POISSON))
 
@@ -144,8 +144,8 @@ def rectangle_checks() -> Iterator[Check]:
     z = np.array([0.2, 0.5, 1.0, 2.0, 5.0])
     stress = stress_field(body, pressure, x=[half_x], y=[half_y], z=z).isel(x=0, y=0)
     reference = Reference("uniform pressure on a rectangle 2 x 1, below its corner", "Love (1929); Newmark (1935)")
-    below = closed_forms.below_rectangle_corner(z, 2 * half_x, 2 * half_y)
-    yield reference.compare("sigma_zz / p", stress["sigma_zz"], below, 1e-9)
+    expected = closed_forms.below_rectangle_corner(z, 2 * half_x, 2 * half_y)
+    yield reference.compare("sigma_zz / p", stress["sigma_zz"], expected, 1e-9)
     x, y = np.array([-0.4, 0.3, 1.5]), np.array([-0.9, 0.1, 0.4])
     stress = stress_field(body, pressure, friction=0.3, x=x, y=y, z=z)
     at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
@@ -182,11 +182,11 @@ def plane_checks() -> Iterator[Check]:
     """Stresses in a thick and in a thin body under a line contact's pressure from end to end."""
     y, z = np.linspace(-2, 2, 17), np.array([0.1, 0.2, 0.35, 0.5, 1.0, 2.0, 4.0])
     source = "McEwen (1949); Smith and Liu (1953), "
-    for length, cells, poisson, state, component, tolerance in (
+    for length, cells, poisson, plane_state, component, tolerance in (
         (1000.0, 100, POISSON, "plane strain, in the middle", "sigma_xx", 3e-3),
         (0.05, 2, 0.0, "plane stress", "sigma_yy", 2e-3),
     ):
-        body = _finite(length)
+        body = _finite_body(length)
         pressure = strip_means((0, length), (-1.25, 1.25), (cells, 160))
         x = [0.5 * length] if cells > 2 else [0.0, 0.3 * length, 0.5 * length]
         for friction in (0.0, 0.3):
@@ -195,7 +195,7 @@ def plane_checks() -> Iterator[Check]:
             computed = stress[component].isel(x=-1, z=3).values
             curve = Curve(("y / a", f"{component} / p0, z = 0.5a"), y, computed, exact[component][:, 3])
             case = f"strip load on a body of length {length:g}a, f = {friction:g}, z >= 0.1a"
-            reference, expected = Reference(case, source + state), components(exact)[:, None]
+            reference, expected = Reference(case, source + plane_state), components(exact)[:, None]
             yield reference.compare("six stresses / p0", components(stress), expected, tolerance, curve=curve)
 
 
@@ -217,17 +217,17 @@ def plate_contact_checks() -> Iterator[Check]:
 def body_checks() -> Iterator[Check]:
     """Check that a body with far ends agrees with the body without these ends."""
     points: dict[str, Any] = {"y": [0.0, 0.5], "z": [0.1, 0.3, 1.0]}
-    bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
-    finite, half_space = (
-        stress_field(body, bump, friction=0.2, x=[19.0, 20.0, 20.5], **points, inside_cells=bump)
-        for body in (_finite(40.0), _half_space())
+    load = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
+    finite_stress, half_space_stress = (
+        stress_field(body, load, friction=0.2, x=[19.0, 20.0, 20.5], **points, inside_cells=load)
+        for body in (_finite_body(40.0), _half_space())
     )
     reference = Reference("body of length 40a loaded over 2a in its middle, f = 0.2", "half-space under the same load")
-    yield reference.compare("six stresses / p0", components(finite), components(half_space), 1e-3)
+    yield reference.compare("six stresses / p0", components(finite_stress), components(half_space_stress), 1e-3)
     at_x = [0.0, 0.1, 1.0, 2.5]
     for length, tolerance in ((20.0, 5e-3), (40.0, 1.25e-3)):
         fields = []
-        for span, body in ((length, _finite(length)), (10.0, QuarterSpace(material=unit_material()))):
+        for span, body in ((length, _finite_body(length)), (10.0, QuarterSpace(material=unit_material()))):
             load = on_cells(lambda x, y: strip(x, y) * (x < 2), (0, span), (-2, 2), (round(8 * span), 48))
             stress = stress_field(body, load, friction=0.2, x=at_x, **points, inside_cells=load)
             fields.append(components(stress))
@@ -243,7 +243,7 @@ def free_end_checks() -> Iterator[Check]:
         grid = Grid.from_centres(pressure["x"].values, pressure["y"].values)
         for depths, label in (((0.02, 0.05), "z = 0.02a, 0.05a"), ((0.1, 0.3, 1.0, 5.0), "z >= 0.1a")):
             residual = end_traction_residual(
-                _finite(length), sliding(pressure.values, 0.3), grid, grid.y[::5], np.array(depths)
+                _finite_body(length), sliding(pressure.values, 0.3), grid, grid.y[::5], np.array(depths)
             )
             case = f"strip load on both ends, L = {length:g}a, f = 0.3"
             yield Reference(case, "free ends").compare(f"traction on the ends / p0, {label}", residual, 0.0, 1e-4)
@@ -253,7 +253,7 @@ def equilibrium_checks() -> Iterator[Check]:
     """Divergence of the stress near an end, by central differences of sixth order, and resultants on a plane."""
     length, step = 4.0, 0.02
     pressure = on_cells(lambda x, y: quartic(y) + 0 * x, (0, length), (-1, 1), (64, 64))
-    body, friction = _finite(length), 0.3
+    body, friction = _finite_body(length), 0.3
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
     centre = {"x": 0.3, "y": 0.4, "z": 0.6}
     slopes = {}
@@ -263,10 +263,10 @@ def equilibrium_checks() -> Iterator[Check]:
         slopes[axis] = {name: float(weights @ stress[name].values.ravel()) for name in STRESSES}
     rows = ("sigma_xx", "tau_xy", "tau_xz"), ("tau_xy", "sigma_yy", "tau_yz"), ("tau_xz", "tau_yz", "sigma_zz")
     divergence = [sum(slopes[axis][name] for axis, name in zip("xyz", row, strict=True)) for row in rows]
-    size = max(abs(value) for by_name in slopes.values() for value in by_name.values())
+    max_slope = max(abs(value) for slopes_of_axis in slopes.values() for value in slopes_of_axis.values())
     case = "smooth strip load, f = 0.3, L = 4a"
     reference, quantity = Reference(f"{case}, 0.3a from the end", "equilibrium"), "divergence of the stress"
-    yield reference.compare(f"{quantity} over its largest slope", np.array(divergence) / size, 0.0, 2e-3)
+    yield reference.compare(f"{quantity} over its largest slope", np.array(divergence) / max_slope, 0.0, 2e-3)
     # The resultants on the plane z = 1 equal the load. Quadrature: Gauss points in x, graded cells in y; farther out
     # the stress is that of Flamant's plate, whose shear under a traction Q falls like 2 Q z / (pi y**2).
     node, weight = np.polynomial.legendre.leggauss(10)
@@ -285,7 +285,7 @@ def equilibrium_checks() -> Iterator[Check]:
 def contact_condition_checks() -> Iterator[Check]:
     """Load, symmetry and conditions of a contact."""
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
-    contact = solve_contact(_finite(8.0), gap, load=8 * LINE_LOAD)
+    contact = solve_contact(_finite_body(8.0), gap, load=8 * LINE_LOAD)
     pressure = contact["pressure"].values
     case = "rigid cylinder on a body of the same length, 8a"
     load = pressure.sum() * 32 / pressure.size
@@ -293,7 +293,7 @@ def contact_condition_checks() -> Iterator[Check]:
     mirrored = [pressure[::-1], pressure[:, ::-1]]
     quantity = "pressure / p0 against its mirror images"
     yield Reference(case, "symmetry").compare(quantity, [pressure, pressure], mirrored, 1e-8)
-    displacement = surface_displacement(_finite(8.0), contact["pressure"])
+    displacement = surface_displacement(_finite_body(8.0), contact["pressure"])
     height = ((gap + displacement) / float(displacement.max() - displacement.min())).values
     in_contact = pressure > 0
     approach = height[in_contact].mean()
@@ -306,13 +306,13 @@ def contact_condition_checks() -> Iterator[Check]:
 def reciprocity_checks() -> Iterator[Check]:
     """Betti's theorem: each of two loads does the same work on the displacement of the other load."""
     for length in (8.0, 2.5):
-        body, span, cells = _finite(length), (0, length), (48, 32)
-        first_load = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
-        second_load = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
-        work = (first_load * surface_displacement(body, second_load)).sum()
-        second_work = (second_load * surface_displacement(body, first_load)).sum()
+        body, span, cells = _finite_body(length), (0, length), (48, 32)
+        load = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
+        other_load = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
+        work = (load * surface_displacement(body, other_load)).sum()
+        other_work = (other_load * surface_displacement(body, load)).sum()
         case, quantity = f"two loads on a body of length {length:g}a", "work of one on the other's displacement"
-        yield Reference(case, "Betti").compare(quantity, work, second_work, 1e-9, relative=True)
+        yield Reference(case, "Betti").compare(quantity, work, other_work, 1e-9, relative=True)
 
 
 def alternation_checks() -> Iterator[Check]:

@@ -30,9 +30,9 @@ from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, Check, Curve, Reference, load_reference
 
 # Moes' numbers M, L: extrapolated central and least film H of Barus oil of constant density; two programs agree to
-# 0.2 %. Below M = 100 an inlet cut at four half-widths reproduces the table, a settled one gives thicker films.
+# 0.2 %. Below M = 100 an inlet of four half-widths reproduces the table; a converged inlet gives thicker films.
 TABLE_INLET = 4.0  # below M = 100, over the half-width
-TABLE = {
+FILM_TABLE = {
     (2.0, 5.0): (4.451, 3.470),
     (20.0, 10.0): (5.270, 3.968),
     (200.0, 10.0): (4.009, 2.990),
@@ -47,8 +47,8 @@ BARUS_OIL: dict[str, Any] = {"viscosity_law": "barus", "density_law": "constant"
 
 def line_checks(*, full: bool) -> Iterator[Check]:
     """Table, formula, rolling moment and limits of line contacts."""
-    for (load, lubricant), films in list(TABLE.items())[: None if full else 3]:
-        # The settled inlet shows how far the table's inlet is too short.
+    for (load, lubricant), films in list(FILM_TABLE.items())[: None if full else 3]:
+        # The converged inlet shows the error by the table's short inlet.
         inlets = {TABLE_INLET: 5e-3} | ({None: 0.05} if full else {}) if load < 100 else {None: 5e-3}
         for inlet, tolerance in inlets.items():
             line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
@@ -117,18 +117,18 @@ def coarse_film(name: str) -> FilmCase:
 def finite_element_checks(name: str) -> Iterator[Check]:
     """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
-    lubricated = coarse_film(name)
-    level_film = film_on_level(lubricated, lubricated.coarsest_level, SETTINGS)
-    solution = continue_solution(lubricated, level_film, SETTINGS).solution
+    film_case = coarse_film(name)
+    level_film = film_on_level(film_case, film_case.coarsest_level, SETTINGS)
+    solution = continue_solution(film_case, level_film, SETTINGS).solution
     fields = {"film": solution.film, "pressure": solution.fluid_pressure}
     # The cells of both solutions differ only by rounding.
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
-    axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
+    axis, expected = (solution["film"].interp(y=0.0).values for solution in (computed, stored))
     curve = Curve(("x / a", "h R / a^2 at y = 0"), stored["x"].values, axis, expected)
     yield reference.compare("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
-    min_film, expected = (data["film"].min("y").values for data in (computed, stored))
+    min_film, expected = (solution["film"].min("y").values for solution in (computed, stored))
     yield reference.compare("least film of each column over the reference", min_film / expected, 1.0, 0.02)
     yield reference.compare("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
 
@@ -155,7 +155,7 @@ def ellipse_checks() -> Iterator[Check]:
     root = float(np.sqrt(2 * viscosity * speed / (modulus * radius)))  # sqrt(2 U)
     for load, lubricant, ratio in ((20.0, 5.0, 1.0), (100.0, 10.0, 0.3)):
         force, crown_radius = load * modulus * radius**2 * root**1.5, radius / ratio
-        # The roller exceeds the contact along its axis, 2 b, by the length over which the film forms.
+        # The roller is longer than the contact, 2 b, by the length over which the film forms.
         half_length = float(
             np.cbrt(3 * force * np.sqrt(radius * crown_radius) / modulus) * (crown_radius / radius) ** 0.25
         )

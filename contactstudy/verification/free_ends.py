@@ -47,14 +47,14 @@ from contactstudy.verification.problems import (
     unit_material,
 )
 
-ALONG_NORMAL = {0.0: 2.0, 0.3: 2.4727}  # Displacement ratio along the inward normal, by Poisson's ratio
+NORMAL_RATIOS = {0.0: 2.0, 0.3: 2.4727}  # Displacement ratio along the inward normal, by Poisson's ratio
 # ``kappa``: at the distance d the edge adds ``kappa (1 - nu**2) P / (2 pi E d)`` to the deflection at a load
 EXTRA_DEFLECTION = {0.0: 1.3677, 0.3: 1.8452, 0.5: 2.7561}
 # Resultant of the equivalent load on the top for a unit load, without images
 TOP_RESULTANT = 1 / (1 - 4 / np.pi**2)
 END_RESULTANT = -2 / np.pi * TOP_RESULTANT  # Resultant on the end plane: tension
 EXACT_LIMIT = "exact limit of the quarter space"  # Source of closed forms
-COMPUTED = "limit of the quarter space, computed apart from the solver"  # Source of numbers that no closed form gives
+COMPUTED_LIMIT = "limit of the quarter space, computed apart from the solver"  # Source of numbers without a closed form
 
 
 def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], distance: FloatArray) -> FloatArray:
@@ -66,7 +66,7 @@ def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], dist
 def edge_load_checks() -> Iterator[Check]:
     """Displacement under a point load on the edge."""
     for poisson in (0.0, 0.3, 0.5):
-        # A cell has a fortieth of the distance, and the error is proportional to it: two distances give the limit.
+        # The error is proportional to the cell's size over the distance: two distances give the limit.
         grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
@@ -74,10 +74,10 @@ def edge_load_checks() -> Iterator[Check]:
         yield Reference(f"point load on the edge, nu = {poisson:g}", EXACT_LIMIT).compare(
             "u_z along the edge over the half-space's", 2 * ratio[20] - ratio[10], 3.362954, 0.01
         )
-    for poisson, expected in ALONG_NORMAL.items():
+    for poisson, expected in NORMAL_RATIOS.items():
         grid = Grid(x_range=(0.0, 8.2), y_range=(-0.45, 0.45), cells_x=82, cells_y=9)
         ratio = _scaled_displacement(poisson, grid, (0, 4), grid.x[:, None])[:, 4]
-        yield Reference(f"point load on the edge, nu = {poisson:g}", COMPUTED).compare(
+        yield Reference(f"point load on the edge, nu = {poisson:g}", COMPUTED_LIMIT).compare(
             "u_z along the inward normal over the half-space's", 2 * ratio[80] - ratio[40], expected, 0.01
         )
 
@@ -88,14 +88,14 @@ def extra_deflection_checks() -> Iterator[Check]:
         grid = Grid(x_range=(0.0, 4.8), y_range=(-0.45, 0.45), cells_x=48, cells_y=9)
         load = point_pressure(grid, 40, 4)
         material = unit_material(poisson)
-        quarter_displacement, half_space = (
+        quarter_displacement, half_space_displacement = (
             float(surface_displacement(body, load)[40, 4])
             for body in (QuarterSpace(material=material), HalfSpace(material=material))
         )
         case = f"point load at 40 cells from the edge, nu = {poisson:g}"
-        kappa = (quarter_displacement - half_space) * 2 * np.pi * grid.x[40]
+        kappa = (quarter_displacement - half_space_displacement) * 2 * np.pi * grid.x[40]
         quantity = "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)"
-        yield Reference(case, COMPUTED).compare(quantity, kappa, expected, 5e-4)
+        yield Reference(case, COMPUTED_LIMIT).compare(quantity, kappa, expected, 5e-4)
 
 
 def resultant_checks() -> Iterator[Check]:
@@ -106,9 +106,9 @@ def resultant_checks() -> Iterator[Check]:
         system = EquationSet.build(modes, lateral, poisson, 1e-4, settings)
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
         solution = system.solve(system.source(Load.NORMAL, spectrum))
-        on_top = system.spectrum_on_top(solution) / modes.weights
+        spectra = system.spectrum_on_top(solution) / modes.weights
         low_rays = np.abs(modes.ray) < 3e-3  # small compared with 1 / distance; the lateral wavenumber is even smaller
-        top_resultant = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low_rays]), on_top.real[low_rays]))
+        top_resultant = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low_rays]), spectra.real[low_rays]))
         end_resultant = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
         yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top_resultant, TOP_RESULTANT, 5e-3)
@@ -156,14 +156,14 @@ def johnson_checks() -> Iterator[Check]:
     circle = on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
     long_strip = strip_means((0, 400), (-1.25, 1.25), (80, 160))
     z = np.linspace(0.3, 1.0, 141)
-    for case, pressure, x, max_error, depth in (
+    for case, pressure, x, max_shear, depth in (
         ("circular Hertz pressure", circle, 0.0, 0.310, 0.48),
         ("line contact's pressure", long_strip, 200.0, 0.300, 0.78),
     ):
         shear = maximum_shear(stress_field(body, pressure, x=[x], y=[0.0], z=z, inside_cells=pressure)).values.ravel()
-        source = f"Johnson (1985) 4.2, 3.4: {max_error:.3f} p0 at {depth:g}a"
-        yield Reference(case, source).compare("largest shear on the axis / p0", shear.max(), max_error, 1e-3)
-        yield Reference(case, source).compare("its depth / a", z[shear.argmax()], depth, 0.015)
+        source = f"Johnson (1985) 4.2, 3.4: {max_shear:.3f} p0 at {depth:g}a"
+        yield Reference(case, source).compare("largest shear on the axis / p0", shear.max(), max_shear, 1e-3)
+        yield Reference(case, source).compare("depth of the largest shear / a", z[shear.argmax()], depth, 0.015)
     x_outside = np.linspace(1.0, 1.3, 31)
     radial = stress_field(body, circle, x=x_outside, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
     tension = (1 - 2 * POISSON) / 3
@@ -221,11 +221,11 @@ FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source 
 QUICK_STRESSES = ("full_sliding", "eccentric_sliding", "thin", "plate_sliding")  # Load cases of the quick level
 # Cells over the loaded width, and more cells for a load that changes along x right at a free end: cells along x are
 # twice as wide, and the pressure's steps between cells affect the stress 0.02a below the top
-CELLS_Y, FINER = 128, {"wedge_sliding": 256}
+CELLS_Y, FINER_CELLS_Y = 128, {"wedge_sliding": 256}
 CONTACT_CELLS = 16  # Cells per half-width along x in contacts
 
 
-def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
+def create_pressure(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
     """Load of a case on cells: along x a quarter of the number along y, but at least 32."""
     cells_x = max(32, round(0.25 * cells_y * case.length))
     return on_cells(lambda x, y: case.pressure(x[:, 0], y[0]), (0, case.length), (-1, 1), (cells_x, cells_y))
@@ -233,19 +233,19 @@ def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
 
 def stress_checks(name: str) -> Iterator[Check]:
     """Stresses under a prescribed load at all stored depths: largest and median difference of six components."""
-    case, below = LOAD_CASES[name], load_reference(STRESS_FILE, name)
-    points: dict[str, Any] = {axis: below[axis].values.astype(float) for axis in "xyz"}
+    case, stored = LOAD_CASES[name], load_reference(STRESS_FILE, name)
+    points: dict[str, Any] = {axis: stored[axis].values.astype(float) for axis in "xyz"}
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    load = pressure_of(case, FINER.get(name, CELLS_Y))
+    load = create_pressure(case, FINER_CELLS_Y.get(name, CELLS_Y))
     stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
-    computed, expected = components(stress), components(below.transpose("x", "y", "z"))
+    computed, expected = components(stress), components(stored.transpose("x", "y", "z"))
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
-    profiles = (fields["sigma_yy"].sel(x=0.0, y=0.75).values for fields in (stress, below))
+    profiles = (fields["sigma_yy"].sel(x=0.0, y=0.75).values for fields in (stress, stored))
     curve = Curve(("z / a", "sigma_yy / p0, x = 0, y = 0.75a"), points["z"], *profiles)
-    quantity = f"six stresses / p0, z >= {float(below['z'].min()):g}a"
-    source = FINITE_ELEMENTS.format(below.attrs["error_estimate"], "p0")
+    quantity = f"six stresses / p0, z >= {float(stored['z'].min()):g}a"
+    source = FINITE_ELEMENTS.format(stored.attrs["error_estimate"], "p0")
     yield Reference(label, source).compare(quantity, computed, expected, 1e-3, curve=curve)
-    source = FINITE_ELEMENTS.format(below.attrs["error_estimate_median"], "p0")
+    source = FINITE_ELEMENTS.format(stored.attrs["error_estimate_median"], "p0")
     yield Reference(label, source).compare(quantity, computed, expected, 2e-4, median=True)
 
 
@@ -273,11 +273,11 @@ def contact_checks(name: str) -> Iterator[Check]:
     )
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
     contact = solve_contact(body, on_grid(case.gap(grid.x, grid.y), grid), load=case.load)
-    under = contact["pressure"].sel(x=slice(case.start, case.stop))
-    x = under["x"].values
+    facing = contact["pressure"].sel(x=slice(case.start, case.stop))
+    x = facing["x"].values
     edges = np.append(x - 0.5 * grid.dx, x[-1] + 0.5 * grid.dx)
     expected = _cell_means(stored["x"].values, stored["pressure"].sel(y=0).values, edges)
-    computed = under.sel(y=0, method="nearest").values
+    computed = facing.sel(y=0, method="nearest").values
     source = FINITE_ELEMENTS.format(float(np.median(stored["pressure_error"].sel(y=0))), "p0 (median)")
     label = f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a"
     label += f", crown {case.crown:g}" if case.crown else ""
@@ -285,14 +285,14 @@ def contact_checks(name: str) -> Iterator[Check]:
     # At a sharp end inside the face neither solution resolves the pressure: wider tolerance within a / 2.
     is_singular = case.distance > 0 and not case.crown
     reference, quantity, tolerance = Reference(label, source), "pressure / p0 at y = 0", 0.05 if is_singular else 0.01
-    away = f"{quantity}, away from the last cell"
-    yield reference.compare(away, computed[1:-1], expected[1:-1], tolerance, curve=curve)
+    inner_quantity = f"{quantity}, away from the last cell"
+    yield reference.compare(inner_quantity, computed[1:-1], expected[1:-1], tolerance, curve=curve)
     if is_singular:
         near = CONTACT_CELLS // 2
-        far = f"{quantity}, 0.5a and more from the roller's end"
-        yield reference.compare(far, computed[near:-near], expected[near:-near], 0.01)
+        far_quantity = f"{quantity}, 0.5a and more from the roller's end"
+        yield reference.compare(far_quantity, computed[near:-near], expected[near:-near], 0.01)
         line_load = _cell_means(stored["x"].values, stored["line_load"].values, edges)
-        computed_load, expected_load = under[:near].sum() * grid.cell_area, line_load[:near].sum() * grid.dx
+        computed_load, expected_load = (facing[:near].sum() * grid.cell_area, line_load[:near].sum() * grid.dx)
         yield reference.compare("load on the roller's last 0.5a / (p0 a^2)", computed_load, expected_load, 0.03)
     else:
         yield reference.compare(f"{quantity} in the last cell", computed[[0, -1]], expected[[0, -1]], 0.03)

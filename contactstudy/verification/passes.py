@@ -17,7 +17,7 @@ from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_hal
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, Check, Curve, Reference, load_reference
 
 STIFF = Material(1000.0, 0.3)  # Young's modulus is a thousand times the peak pressure of the contacts
-# Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up
+# Allowed differences of residual stress, and of shear summed over depth. Above the limit errors accumulate
 TOLERANCES = {
     "settling": (0.06, 0.03),
     "settling_sliding": (0.06, 0.05),
@@ -34,13 +34,13 @@ def line_contact(friction: float, y: FloatArray, z: FloatArray, poisson: float =
     return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z})
 
 
-def from_top(friction: float) -> xr.Dataset:
+def contact_from_top(friction: float) -> xr.Dataset:
     """Stresses of the line contact from the top down, with the contact's peak pressure."""
     contact = line_contact(friction, np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71))
     return contact.assign(hertz_max_pressure=1.0)
 
 
-def on_top(friction: float) -> tuple[float, float]:
+def top_stresses(friction: float) -> tuple[float, float]:
     """Least shear yield stress, on the top under the line contact, without yield and for shakedown with rho_yy."""
     stress = hertz_strip(np.linspace(-1, 1, 20001), 0.0, 1.0, 1.0, 0.3, friction=friction)
 
@@ -53,16 +53,16 @@ def on_top(friction: float) -> tuple[float, float]:
 def shakedown_checks() -> Iterator[Check]:
     """Limits of line contacts."""
     case, quantity = "line contact without friction", "p0 / k"
-    plane, axial = (shakedown_limit(from_top(0.0), axial=axial) for axial in (False, True))
-    first, limit = plane["first_yield_limit"], axial["shakedown_limit"]
+    plane_limits, axial_limits = (shakedown_limit(contact_from_top(0.0), axial=axial) for axial in (False, True))
+    first_yield_limit, limit = plane_limits["first_yield_limit"], axial_limits["shakedown_limit"]
     on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
-    at_yield = f"{quantity} at first yield"
-    yield Reference(case, "McEwen (1949)").compare(at_yield, first, 1 / on_axis, 2e-3, relative=True)
+    yield_quantity = f"{quantity} at first yield"
+    yield Reference(case, "McEwen (1949)").compare(yield_quantity, first_yield_limit, 1 / on_axis, 2e-3, relative=True)
     yield Reference(case, "Johnson (1962)").compare(f"{quantity} at shakedown", limit, 4.0, 2e-3, relative=True)
     for friction in (0.4, 0.6):
-        top = shakedown(from_top(friction)).isel(x=0, z=0)
+        top = shakedown(contact_from_top(friction)).isel(x=0, z=0)
         reference = Reference(f"top of a line contact, friction {friction:g}", "closed form, one-dimensional search")
-        for name, expected in zip(("first_yield_stress", "shakedown_stress"), on_top(friction), strict=True):
+        for name, expected in zip(("first_yield_stress", "shakedown_stress"), top_stresses(friction), strict=True):
             yield reference.compare(f"{name} / p0", top[name], expected, 1e-3)
 
 
@@ -70,7 +70,7 @@ def residual_checks() -> Iterator[Check]:
     """Residual stress of given eigenstrains."""
     body = HalfSpace(material=STIFF)
     edges = np.linspace(-0.7, 0.7, 15), np.linspace(0.1, 1.5, 15)
-    x, z = (0.5 * (e[1:] + e[:-1]) for e in edges)
+    x, z = (0.5 * (axis_edges[1:] + axis_edges[:-1]) for axis_edges in edges)
     in_rectangle = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
     eigenstrain = (1.0, 0.5, -0.3, 0.4)
     pairs = zip(("xx", "yy", "zz", "xz"), eigenstrain, strict=True)
@@ -94,31 +94,32 @@ def residual_checks() -> Iterator[Check]:
     thermal_strain = xr.Dataset({"plastic_strain_xx": uniform, "plastic_strain_zz": uniform}, {"x": x, "z": z})
     stress = eigenstrain_stress(finite_body, thermal_strain, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=depth_edges)
     max_stress = max(float(abs(stress[name]).max()) for name in STRESSES) / STIFF.young
-    case = "eigenstrains xx and zz all over a body between ends"
-    yield Reference(case, "it fits together").compare("largest stress / E", max_stress, 0.0, 1e-5)
+    case = "uniform eigenstrains xx and zz in a body between ends"
+    yield Reference(case, "compatible strain").compare("largest stress / E", max_stress, 0.0, 1e-5)
     plastic_strain = xr.Dataset({"plastic_strain_yy": uniform}, {"x": x, "z": z})
     stress = eigenstrain_stress(finite_body, plastic_strain, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=depth_edges)
     axial = float(stress["sigma_yy"].mean()) / STIFF.young
-    yield Reference("eigenstrain yy all over it", "Hooke's law").compare("sigma_yy / E", axial, -1.0, 1e-5)
+    reference = Reference("uniform eigenstrain yy in a body between ends", "Hooke's law")
+    yield reference.compare("sigma_yy / E", axial, -1.0, 1e-5)
 
 
 def pass_checks() -> Iterator[Check]:
     """Flow on either side of the shakedown limit."""
-    contact = from_top(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
+    contact = contact_from_top(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
     body = HalfSpace(material=STIFF)
     reference = Reference("passes of a line contact without friction", "Melan; Johnson's p0 = 4 k")
     settling = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
     flow = residual_stress(contact, body, settling, passes=5)["plastic_flow"].values
-    yield reference.compare("flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3)
+    yield reference.compare("last flow over the first, 3 % below the limit", flow[-1] / flow[0], 0.0, 1e-3)
     yielding_material = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
     flow = residual_stress(contact, body, yielding_material, passes=5)["plastic_flow"].values
-    yield reference.compare("flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05)
+    yield reference.compare("fifth flow over the fourth, 3 % above the limit", flow[-1] / flow[-2], 1.0, 0.05)
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
     """Residual stress and plastic shear of each pass against finite elements."""
-    case, residual = PASSES_CASES[name], load_reference(PASSES_FILE, name)
-    z, tolerances = residual["z"].values, TOLERANCES[name]
+    case, stored = PASSES_CASES[name], load_reference(PASSES_FILE, name)
+    z, tolerances = stored["z"].values, TOLERANCES[name]
     contact = line_contact(case.friction, np.linspace(-4.0, 4.0, 129), z, case.poisson)
     hardening = STIFF.young * case.kinematic_hardening
     plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
@@ -127,16 +128,16 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     # The passes end once the residual stress is steady.
     passes = passes.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
     last_pass = passes.isel(pass_number=-1)
-    size = max(float(np.abs(residual[component]).max()) for component in ("sigma_xx", "sigma_yy"))
+    max_residual = max(float(np.abs(stored[component]).max()) for component in ("sigma_xx", "sigma_yy"))
     label = f"{name}: p0 = {1 / case.shear_yield_stress:.3g} k, f = {case.friction:g}, {case.passes} passes"
     origin = "finite elements (scikit-fem), own error"
     for component in ("sigma_xx", "sigma_yy"):
-        computed, expected = last_pass[component].values / size, residual[component].values / size
-        source = f"{origin} {residual[component].attrs['error_estimate'] / size:.0e}"
+        computed, expected = last_pass[component].values / max_residual, stored[component].values / max_residual
+        source = f"{origin} {stored[component].attrs['error_estimate'] / max_residual:.0e}"
         quantity = f"residual {component} over the largest"
         curve = Curve(("z / a", quantity), z, computed, expected) if component == "sigma_yy" else None
         yield Reference(label, source).compare(quantity, computed, expected, tolerances[0], curve=curve)
-    strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passes["plastic_strain_yz"].values
+    strain, computed = stored["plastic_strain_yz_young"], STIFF.young * passes["plastic_strain_yz"].values
     sums, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
     source = f"{origin} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"

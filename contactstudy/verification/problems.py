@@ -74,7 +74,7 @@ class Reference(NamedTuple):
     ) -> Check:
         """Compare two numbers, or two fields where they differ most or by the median."""
         is_field = np.ndim(computed) > 0
-        values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
+        values, references = (np.ravel(array).astype(float) for array in np.broadcast_arrays(computed, expected))
         differences = np.abs(values - references)
         # argmax also finds a NaN, which exceeds every tolerance.
         is_median = median and not np.isnan(differences).any()

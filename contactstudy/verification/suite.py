@@ -84,13 +84,13 @@ class Verification:
     def to_dataset(self) -> xr.Dataset:
         """All checks as data along ``check``."""
         groups = [name for name, group in self.groups.items() for _ in group]
-        data = xr.Dataset({"group": ("check", np.array(groups, dtype=object))})
+        dataset = xr.Dataset({"group": ("check", np.array(groups, dtype=object))})
         kinds = dict.fromkeys(("case", "quantity", "source"), object)
         kinds |= dict.fromkeys(("computed", "expected", "difference", "tolerance"), float) | {"passed": bool}
         for name, kind in kinds.items():
-            data[name] = "check", np.array([getattr(check, name) for check in self.checks], dtype=kind)
-        data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
-        return describe(data, "verification of contactstudy")
+            dataset[name] = "check", np.array([getattr(check, name) for check in self.checks], dtype=kind)
+        dataset.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
+        return describe(dataset, "verification of contactstudy")
 
 
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:
@@ -140,26 +140,26 @@ def verify(level: str = "quick") -> xr.Dataset:
 HEADING = f"{'':4}  {'difference':>10}  {'allowed':>8}  {'computed':>11}  {'reference':>11}  case: quantity [source]"
 
 
-def line(check: Check) -> str:
+def format_line(check: Check) -> str:
     """One line of the table on the screen."""
     status = "ok" if check.passed else "FAIL"
     values = f"{check.difference:10.1e}  {check.tolerance:8.1e}  {check.computed:11.6g}  {check.expected:11.6g}"
     return f"{status:4}  {values}  {check.case}: {check.quantity} [{check.source}]"
 
 
-def summary(verification: Verification) -> str:
+def format_summary(verification: Verification) -> str:
     """Last line on the screen."""
     checks = verification.checks
-    failed = sum(not check.passed for check in checks)
-    status = f"{failed} failed" if failed else "all passed"
+    failed_count = sum(not check.passed for check in checks)
+    status = f"{failed_count} failed" if failed_count else "all passed"
     return f"{len(checks)} checks in {verification.seconds:.0f} s: {status}"
 
 
-def page(verification: Verification, figures: dict[str, str]) -> str:
+def format_page(verification: Verification, figures: dict[str, str]) -> str:
     """Markdown page; `figures` are file names by group."""
     sections = [
         "# Verification of contactstudy",
-        f"{verification.to_dataset().attrs['source']}, level {verification.level}: {summary(verification)}.",
+        f"{verification.to_dataset().attrs['source']}, level {verification.level}: {format_summary(verification)}.",
         "Lengths are in half-widths a, pressures and stresses in peak pressures p0; E* = 1.",
     ]
     for name, group in verification.groups.items():
@@ -168,19 +168,19 @@ def page(verification: Verification, figures: dict[str, str]) -> str:
         for check in group:
             numbers = f"{check.computed:.6g} {check.expected:.6g} {check.difference:.1e} {check.tolerance:.1e}"
             status = "ok" if check.passed else "**FAIL**"
-            rows.append(row([check.case, check.quantity, check.source, *numbers.split(), status]))
+            rows.append(format_row([check.case, check.quantity, check.source, *numbers.split(), status]))
         sections.append("\n".join(rows))
         if name in figures:
             sections.append(f"![{name}: computed and reference]({figures[name]})")
     return "\n\n".join(sections) + "\n"
 
 
-def row(cells: list[str]) -> str:
+def format_row(cells: list[str]) -> str:
     """Row of a Markdown table."""
     return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells).replace("|  |", "| |") + " |"
 
 
-def panels(count: int) -> tuple[Figure, list[Axes]]:
+def create_panels(count: int) -> tuple[Figure, list[Axes]]:
     """Figure of a page's width and its `count` panels in rows of two."""
     from matplotlib.figure import Figure
 
@@ -192,7 +192,7 @@ def panels(count: int) -> tuple[Figure, list[Axes]]:
 def plot_profiles(checks: list[Check]) -> Figure:
     """Draw the profiles of checks: computed as a line, the reference as circles."""
     curves = [(check.case, check.curve) for check in checks if check.curve is not None]
-    figure, axes = panels(len(curves))
+    figure, axes = create_panels(len(curves))
     for ax, (case, curve) in zip(axes, curves, strict=True):
         every_nth = slice(None, None, max(1, curve.positions.size // 40))
         ax.plot(curve.positions, curve.computed, label="computed", **line_styles(1)[0])
@@ -218,13 +218,13 @@ def make_folder(folder: Path) -> None:
 def write(verification: Verification, folder: Path) -> list[Path]:
     """Write ``verification.nc``, ``verification.md`` and a figure of each group with profiles; return the paths."""
     make_folder(folder)
-    data = verification.to_dataset()
-    data["passed"] = data["passed"].astype(np.int8)
-    write_dataset(folder / "verification.nc", data)
+    dataset = verification.to_dataset()
+    dataset["passed"] = dataset["passed"].astype(np.int8)
+    write_dataset(folder / "verification.nc", dataset)
     figures: dict[str, str] = {}
     for name, checks in verification.groups.items():
         if any(check.curve is not None for check in checks):
             figures[name] = f"{name.replace(' ', '_').replace('-', '_')}.png"
             plot_profiles(checks).savefig(folder / figures[name], dpi=110)
-    write_text(folder / "verification.md", page(verification, figures))
+    write_text(folder / "verification.md", format_page(verification, figures))
     return [folder / name for name in ("verification.nc", "verification.md", *figures.values())]

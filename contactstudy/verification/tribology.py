@@ -1,8 +1,7 @@
 """Checks of stick and slip, flash temperature and wear: closed forms, Kalker's coefficients, published numbers.
 
 * Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients at vanishing
-  creepage, where the traction at the trailing edge is singular. The error is of first order in the cell: two grids are
-  extrapolated.
+  creepage, where the traction at the trailing edge is singular; two grids are extrapolated with a first-order error.
 * Bentall and Johnson, *Int. J. Mech. Sci.* 9 (1967) 389, recomputed by the program CONTACT: unlike rollers.
 * A traction curve by CONTACT, 48 x 44 cells, whose error explains the difference (docs/explanation/rolling.md).
 * Spence, *J. Elasticity* 5 (1975) 297: a sphere pressed with friction sticks within the same part of the contact at any
@@ -54,12 +53,13 @@ def solve_pair(
 
 
 def line_contact(
-    first: Material, second: Material, motion: Rolling, friction: float, *, coupled: bool = False
+    body_material: Material, roller_material: Material, motion: Rolling, friction: float, *, coupled: bool = False
 ) -> xr.Dataset:
-    """Contact of two cylinders of radius 2, with half-width 1, in plane strain, by ends that only mirror."""
-    modulus = 1 / (1 / first.plane_strain_modulus + 1 / second.plane_strain_modulus)
+    """Contact of two cylinders of radius 2, with half-width 1, in plane strain, by the mirror model of the ends."""
+    modulus = 1 / (1 / body_material.plane_strain_modulus + 1 / roller_material.plane_strain_modulus)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, 1), (-1.3, 1.3), (2, LINE_CELLS))
-    bodies = [FiniteLengthSpace(length=1.0, material=material_of, model="mirror") for material_of in (first, second)]
+    materials = (body_material, roller_material)
+    bodies = [FiniteLengthSpace(length=1.0, material=solid, model="mirror") for solid in materials]
     return solve_pair(bodies, gap, 0.25 * np.pi * modulus, friction, motion, coupled=coupled)
 
 
@@ -142,9 +142,9 @@ def shift_checks() -> Iterator[Check]:
     yield reference.compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
 
-def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
+def ellipse_gap(along_x: float, along_y: float, load: float, solid: Material, cells: tuple[int, int]) -> xr.DataArray:
     """Gap of two like bodies whose contact under a load is an ellipse of given semi-axes (Johnson 3.61, 4.26)."""
-    modulus = 0.5 * of.plane_strain_modulus
+    modulus = 0.5 * solid.plane_strain_modulus
     peak = 1.5 * load / (np.pi * along_x * along_y)
     long_axis, short_axis = max(along_x, along_y), min(along_x, along_y)
     e_squared = 1 - (short_axis / long_axis) ** 2
@@ -161,15 +161,15 @@ def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells
 
 
 def rolling_ellipse(
-    along_x: float, along_y: float, load: float, of: Material, friction: float, motion: Rolling, cells: tuple[int, int]
+    half_x: float, half_y: float, load: float, metal: Material, friction: float, motion: Rolling, cells: tuple[int, int]
 ) -> xr.Dataset:
     """Two like bodies that touch on an ellipse, in steady rolling."""
-    body, gap = HalfSpace(material=of), ellipse_gap(along_x, along_y, load, of, cells)
+    body, gap = HalfSpace(material=metal), ellipse_gap(half_x, half_y, load, metal, cells)
     return solve_pair((body, body), gap, load, friction, motion, tolerance=1e-5)
 
 
 # Ratio of the half-widths along and across rolling, and Poisson's ratio; further pairs at the full level
-KALKER = ((1.0, 0.25), (1.0, 0.5), (0.5, 0.0), (5.0, 0.25))
+KALKER_PAIRS = ((1.0, 0.25), (1.0, 0.5), (0.5, 0.0), (5.0, 0.25))
 WHOLE_RANGE = (0.1, 0.3, 1.0, 1 / 0.4, 10.0)
 # Numbers of cells along either axis of the two grids; along rolling for an ellipse of 10 to 1, to limit the time
 KALKER_CELLS, LONG_CELLS = (34, 62), (62, 118)
@@ -183,9 +183,9 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
         for ratio, *columns in TABLE
         for poisson, coefficients in zip(POISSONS, zip(*columns, strict=True), strict=True)
     }
-    further_pairs = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
+    further_pairs = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER_PAIRS]
     motions = Rolling(longitudinal_creepage=CREEPAGE), Rolling(lateral_creepage=CREEPAGE), Rolling(spin=-CREEPAGE)
-    for ratio, poisson in (*KALKER, *further_pairs):
+    for ratio, poisson in (*KALKER_PAIRS, *further_pairs):
         table = published[ratio, poisson]
         counts = KALKER_CELLS if ratio < 10 else LONG_CELLS
         across, steel = 1.0 / ratio, material(1.0, poisson)
@@ -198,7 +198,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
                 force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
                 forces.append(force / (CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
-        # The error is of first order in the cell: count - 6 cells span the contact, since three lie outside either end.
+        # The error is of first order in the cell: count - 6 cells span the contact, with three cells beyond either end.
         coarse_count, fine_count = (count - 6 for count in counts)
         coarse, fine = np.array(coefficients)[:, :2]
         extrapolated = (fine_count * fine - coarse_count * coarse) / (fine_count - coarse_count)
@@ -226,7 +226,7 @@ def contact_program_checks() -> Iterator[Check]:
         yield reference.compare("force over full sliding's", computed, expected, 0.016, relative=True)
     soft_material = material(23e9, 0.31)
     modulus = 1 / (1 / soft_material.plane_strain_modulus + 1 / steel.plane_strain_modulus)
-    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm in the reference and 1 here.
+    # Creepages are proportional to the half-width over the pair's radius: 0.1 mm / 25 mm in the reference, 1 here.
     scale = 0.1 / 25
     for position, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
         force = position * 0.05 * 0.25 * np.pi * modulus
@@ -241,7 +241,7 @@ UNIT_PROPERTIES = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
 EVERYWHERE = -np.inf, np.inf
 
 
-def rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
+def solve_rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
     """Temperature rise of a body with unit properties."""
     body = MovingBody(ThermalProperties(**UNIT_PROPERTIES), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
@@ -257,24 +257,24 @@ def fast_checks() -> Iterator[Check]:
     fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), 0.05 * pressure)}
     result = xr.Dataset(fields, coords={"x": grid.x, "y": grid.y})
     motion = Sliding(body_speed=-speed - 0.5 * sliding, roller_speed=-speed + 0.5 * sliding)
-    hot = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
-    factor, behind = closed_forms.fast_line()
+    heated = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
+    factor, lag = closed_forms.fast_line()
     heat = 0.05 * 1.5e9 * sliding
     expected = 0.5 * heat * np.sqrt(STEEL_HEAT.diffusivity * a / (np.pi * speed)) / STEEL_HEAT.conductivity * factor
     reference = Reference("fast line contact of like bodies", "Blok (1937); Jaeger (1942)")
-    yield reference.compare("largest rise", hot.max_temperature_rise, expected, 5e-3, relative=True)
-    yield reference.compare("distance behind the middle / a", -hot.max_temperature_rise_y / a, behind, 0.02)
+    yield reference.compare("largest rise", heated.max_temperature_rise, expected, 5e-3, relative=True)
+    yield reference.compare("distance behind the middle / a", -heated.max_temperature_rise_y / a, lag, 0.02)
     reference, quantity = reference._replace(source="symmetry"), "part of the heat in the body"
-    yield reference.compare(quantity, hot.body_heat_share, 0.5, 2e-3)
-    difference = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
-    yield reference._replace(source="shared heat").compare(
-        "surfaces' difference where they touch, over the rise", difference.max() / hot.max_temperature_rise, 0.0, 1e-6
-    )
+    yield reference.compare(quantity, heated.body_heat_share, 0.5, 2e-3)
+    difference = abs(heated.temperature_rise - heated.roller_temperature_rise).where(result.pressure > 0)
+    difference_over_rise = difference.max() / heated.max_temperature_rise
+    name = "difference of the contact temperatures, over the rise"
+    yield reference._replace(source="shared heat").compare(name, difference_over_rise, 0.0, 1e-6)
     motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
-    hot = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
+    heated = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
     source = "shares go with the root of the speed; Blok (1937)"
     reference = Reference("fast line contact, the body four times as fast", source)
-    yield reference.compare(quantity, hot.body_heat_share, 2 / 3, 5e-3)
+    yield reference.compare(quantity, heated.body_heat_share, 2 / 3, 5e-3)
 
 
 def band_checks() -> Iterator[Check]:
@@ -282,7 +282,7 @@ def band_checks() -> Iterator[Check]:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2, 2), cells_x=5, cells_y=64)
     band = np.where(np.abs(grid.y) < 1, 1.0, 0.0)
     for drift in (0.01, 0.3, 5.0, 100.0):
-        rises = rise(grid, band, 2 * drift, (0.0, 8.0))[2]
+        rises = solve_rise(grid, band, 2 * drift, (0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
         curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
         reference = Reference(f"band of uniform heat between two ends, Peclet number {drift:g}", "Jaeger (1942)")
@@ -297,12 +297,12 @@ def resting_checks() -> Iterator[Check]:
     cells = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
     square = np.where((np.abs(cells.x)[:, None] < 1) & (np.abs(cells.y) < 1), 1.0, 0.0)
     side = 0.5 * float(square[22].sum()) * cells.dy
-    centre_rise = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
+    centre_rise = float(solve_rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
     reference = Reference("square of uniform heat at rest", source)
     yield reference.compare("rise in the middle", centre_rise, expected, 1e-5, relative=True)
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
-    centre_rise, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
+    centre_rise, expected = float(solve_rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
     yield Reference(case, source).compare("rise in the middle", centre_rise, expected, 2e-3, relative=True)
 
@@ -314,20 +314,20 @@ def end_checks() -> Iterator[Check]:
         Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges]))
     )
     heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half_grid.y) < 0.5)
-    at_end = rise(half_grid, heat, 3.0, (0.0, np.inf))
-    mirrored_rise = rise(full_grid, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
+    end_rise = solve_rise(half_grid, heat, 3.0, (0.0, np.inf))
+    mirrored_rise = solve_rise(full_grid, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
     scale = mirrored_rise.max()
     reference = Reference("heat beside an insulated end", "symmetry")
-    yield reference.compare("rise over the largest", at_end / scale, mirrored_rise / scale, 1e-9)
+    yield reference.compare("rise over the largest", end_rise / scale, mirrored_rise / scale, 1e-9)
     for speed in (1.0, -4.0):
-        outflow, power = heat_carried_away(speed)
+        outflow, power = compute_heat_flow(speed)
         case = f"heat in three cells between two ends, surface speed {speed:g}"
         reference = Reference(case, "conservation of energy")
-        yield reference.compare("heat through planes before and behind, over all of it", outflow / power, 1.0, 1e-6)
+        yield reference.compare("heat through planes before and behind, over the total", outflow / power, 1.0, 1e-6)
 
 
-def heat_carried_away(speed: float) -> tuple[float, float]:
-    """Heat through planes before and behind some sources, conducted and carried, and the sources' own heat, W."""
+def compute_heat_flow(speed: float) -> tuple[float, float]:
+    """Heat through planes before and behind some sources, by conduction and motion, and the heat of the sources, W."""
     grid = Grid(x_range=(0.0, 2.0), y_range=(-3, 3), cells_x=12, cells_y=60)
     heat = np.zeros(grid.shape)
     heat[2, 28:30], heat[7, 30] = 5.0, 1.0
@@ -336,9 +336,9 @@ def heat_carried_away(speed: float) -> tuple[float, float]:
     stencil = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * grid.dy)  # first derivative, sixth order
     outflow = 0.0
     for depth, weight in zip(40 * nodes**4, weights * 80 * nodes**3, strict=True):
-        profile = grid.dx * rise(grid, heat, speed, (0.0, 2.0), depth).sum(axis=0)
+        rises = grid.dx * solve_rise(grid, heat, speed, (0.0, 2.0), depth).sum(axis=0)
         for side, row in ((-1, 8), (1, 51)):
-            outflow += side * weight * float(speed * profile[row] - stencil @ profile[row - 3 : row + 4])
+            outflow += side * weight * float(speed * rises[row] - stencil @ rises[row - 3 : row + 4])
     return outflow, float(heat.sum()) * grid.cell_area
 
 
@@ -355,13 +355,13 @@ def sliding_wear_checks() -> Iterator[Check]:
     name = "sharp roller inside the face, full sliding"
     distances = [0.0, 3e3, 2e5]
     result = wear_in(case, COEFFICIENT, distance=distances, grid=grid)
-    ideal, reference = COEFFICIENT * case.normal_load * distances[2], Reference(name, "Archard (1953): k W s")
-    yield reference.compare("worn volume", result.worn_volume[2], ideal, 1e-9, relative=True)
+    expected_volume, reference = COEFFICIENT * case.normal_load * distances[2], Reference(name, "Archard (1953): k W s")
+    yield reference.compare("worn volume", result.worn_volume[2], expected_volume, 1e-9, relative=True)
     load = result.line_load.values[2]
-    under = np.isfinite(case.gap(grid)).any(axis=1)
-    ratio, reference = load[under].max() / load[under].min(), Reference(name, "a steady profile wears evenly")
+    is_facing = np.isfinite(case.gap(grid)).any(axis=1)
+    ratio, reference = load[is_facing].max() / load[is_facing].min(), Reference(name, "a steady profile wears evenly")
     yield reference.compare("largest load per length over the smallest, worn in", ratio, 1.0, 1e-3)
-    explicit = stepped_explicit(case, grid, distances[1])
+    explicit = wear_explicitly(case, grid, distances[1])
     depth, explicit = result.wear_depth.values[1] / explicit.max(), explicit / explicit.max()
     curve = Curve(("x / mm", "worn depth over the largest"), 1e3 * grid.x, depth, explicit)
     reference = Reference(name, f"{EXPLICIT_STEPS} explicit steps")
@@ -369,19 +369,19 @@ def sliding_wear_checks() -> Iterator[Check]:
     worn_roller = replace(case.roller, profile=worn_profile(case, result, distances[1]))
     worn_case = replace(case, roller=worn_roller)
     line_load = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
-    load, reference = result.line_load.values[1], Reference(name, "the contact while it wore")
+    load, reference = result.line_load.values[1], Reference(name, "the contact during the wear")
     quantity = "load per length of the worn profile, over the largest"
     yield reference.compare(quantity, line_load / load.max(), load / load.max(), 2e-3)
 
 
-def stepped_explicit(case: Case, grid: Grid, distance: float) -> FloatArray:
+def wear_explicitly(case: Case, grid: Grid, distance: float) -> FloatArray:
     """Worn depth by many explicit steps."""
     gap = on_grid(case.gap(grid), grid)
     depth = np.zeros((grid.cells_x, 1))
-    per_load = COEFFICIENT * distance / EXPLICIT_STEPS / (2 * np.pi * case.roller.radius)
+    compliance = COEFFICIENT * distance / EXPLICIT_STEPS / (2 * np.pi * case.roller.radius)
     for _ in range(EXPLICIT_STEPS):
         pressure = solve_contact(case.body, gap + depth, load=case.normal_load)["pressure"].values
-        depth = depth + per_load * grid.dy * pressure.sum(axis=1, keepdims=True)
+        depth = depth + compliance * grid.dy * pressure.sum(axis=1, keepdims=True)
     return depth[:, 0]
 
 

@@ -22,7 +22,7 @@ from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured_profile import Measured, interpolate_with_limited_slopes
 
 ROUNDING = 1e-9  # Rounding of a relative distance
-WORN_ATTRIBUTES = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ
+WORN_ATTRIBUTES = ("body", "roller", "end_distance")  # Equal in all cases of a worn profile, unlike load and motion
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
 
 
@@ -41,8 +41,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Returns
     -------
     Sum
-        Sum of the unworn profile and the worn depth as a smooth `Measured`, whose means over columns of different
-        widths equal the worn depths.
+        Sum of the unworn profile and a smooth `Measured`, whose means over the columns equal the worn depths.
 
     Raises
     ------
@@ -64,7 +63,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
-    check_solved_for(worn, case, "worn", only=WORN_ATTRIBUTES)
+    check_solved_for(worn, case, "worn", compared_names=WORN_ATTRIBUTES)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
     distances = worn["distance"].values
@@ -78,26 +77,26 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     x = worn["x"].values - mid_length
     start, stop = (end - mid_length for end in case.contact_range)
     rounding = ROUNDING * case.roller.length
-    mask = (x >= start - rounding) & (x <= stop + rounding)
-    columns = _Columns.of(worn, x, mask, start, stop)
-    depth = worn["wear_depth"].values[index, mask]
-    end_depth = _sharp_end_depth(case, columns, depth, worn["pressure"].values[index, mask])
+    in_contact = (x >= start - rounding) & (x <= stop + rounding)
+    columns = _Columns.of(worn, x, in_contact, start, stop)
+    depth = worn["wear_depth"].values[index, in_contact]
+    end_depth = _sharp_end_depth(case, columns, depth, worn["pressure"].values[index, in_contact])
     return Sum((case.roller.profile, _fit_profile(case, columns, end_depth, depth)))
 
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Columns in the contact, and the points (column, node) that give a column's mean depth."""
+    """Columns in the contact, and the Gauss points (column, node) of each column's mean depth."""
 
     edges: FloatArray
     points: FloatArray
 
     @classmethod
-    def of(cls, worn: xr.Dataset, x: FloatArray, mask: NDArray[np.bool_], start: float, stop: float) -> _Columns:
+    def of(cls, worn: xr.Dataset, x: FloatArray, in_contact: NDArray[np.bool_], start: float, stop: float) -> _Columns:
         """Return the columns of a result, with uniform or different widths."""
-        centres = x[mask]
+        centres = x[in_contact]
         uniform = "x_width" not in worn.coords
-        widths = np.full(centres.size, (x[-1] - x[0]) / (x.size - 1)) if uniform else worn["x_width"].values[mask]
+        widths = np.full(centres.size, (x[-1] - x[0]) / (x.size - 1)) if uniform else worn["x_width"].values[in_contact]
         edges = np.append(centres - 0.5 * widths, centres[-1] + 0.5 * widths[-1])
         clipped = np.clip(edges, start, stop)
         points = 0.5 * (clipped[1:] + clipped[:-1])[:, None] + 0.5 * np.diff(clipped)[:, None] * GAUSS_POINTS
@@ -147,8 +146,8 @@ def _fit_profile(
     edges, midpoints = columns.edges, centres_of(columns.edges)
     # Points between the outer column's midpoint and the end; each point is half as far from the end as the one before
     fractions = 0.5 ** np.arange(1, 11)
-    first, last = start + fractions * (midpoints[0] - start), stop - fractions * (stop - midpoints[-1])
-    positions = np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], midpoints])), [stop]])
+    low, high = (start + fractions * (midpoints[0] - start), stop - fractions * (stop - midpoints[-1]))
+    positions = np.concatenate([[start], np.sort(np.concatenate([low, high, edges[1:-1], midpoints])), [stop]])
     for border in borders:
         border_points = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
         is_distinct = np.abs(positions - border_points[:, None]).min(axis=1) > ROUNDING * case.roller.length
@@ -157,14 +156,14 @@ def _fit_profile(
     is_corrected = np.ones(depth.size, dtype=bool)
     for border in borders:
         in_border = (positions >= border.x[0]) & (positions <= border.x[-1])
-        unworn = case.roller.profile.drop(positions[in_border], case.roller.length)
-        points[in_border] = np.maximum(border(positions[in_border]) - unworn, 0.0)
+        unworn_drop = case.roller.profile.drop(positions[in_border], case.roller.length)
+        points[in_border] = np.maximum(border(positions[in_border]) - unworn_drop, 0.0)
         is_corrected &= (midpoints < border.x[0]) | (midpoints > border.x[-1])
-    nearest = np.searchsorted(positions, midpoints)
+    index = np.searchsorted(positions, midpoints)
     profile = _create_measured(half_length, positions, points)
     for _ in range(8):  # Rounds that move the points until the interpolation has the depth of every column
         mean_depths = columns.mean_depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[nearest] = np.maximum(points[nearest] + np.where(is_corrected, depth - mean_depths, 0.0), 0.0)
+        points[index] = np.maximum(points[index] + np.where(is_corrected, depth - mean_depths, 0.0), 0.0)
         profile = _create_measured(half_length, positions, points)
     return profile
 

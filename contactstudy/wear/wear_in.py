@@ -65,7 +65,7 @@ STAGE_FRACTION = 1 - np.sqrt(0.5)
 STEP_SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
 
 
-class State(NamedTuple):
+class Wear(NamedTuple):
     """State of the wear integration: depth, pressure, slip, worn area."""
 
     distance: float  # m
@@ -78,7 +78,7 @@ class State(NamedTuple):
     converged: bool = True
 
 
-class Start(NamedTuple):
+class StartState(NamedTuple):
     """Cells and worn profile before the first step."""
 
     grids: Iterable[Grid]  # the first that contains the contact is used
@@ -128,13 +128,13 @@ class WearIntegrator:
         load = pressure.sum(axis=1)
         return np.asarray(np.divide(wear_rate.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))
 
-    def initial_state(self, distance: float, depth: FloatArray, error: float) -> State:
+    def initial_state(self, distance: float, depth: FloatArray, error: float) -> Wear:
         """Return the state of a worn depth with an error."""
         contact = self.solve_contact(depth, np.zeros_like(depth), None)
         slip = self.compute_slip(depth)
-        return State(distance, depth, contact.pressure, slip, error, converged=contact.converged)
+        return Wear(distance, depth, contact.pressure, slip, error, converged=contact.converged)
 
-    def integrate(self, state: State, stop: float) -> Iterator[State]:
+    def integrate(self, state: Wear, stop: float) -> Iterator[Wear]:
         """Integrate to a distance; yield the state after each step."""
         step = state.next_step
         min_length = 1e-6 * min(step, stop - state.distance)  # A shorter step is accepted with any error
@@ -164,7 +164,7 @@ class WearIntegrator:
             )
             yield state
 
-    def _worn_area_rate(self, state: State) -> float:
+    def _worn_area_rate(self, state: Wear) -> float:
         """Area (x, depth) that the law removes from the profile, per distance."""
         grid = self.shape.grid
         return self.rate * grid.dy * float((grid.widths * state.slip) @ state.pressure.sum(axis=1))  # eq. (603)
@@ -173,7 +173,7 @@ class WearIntegrator:
         """Load per length (x), N/m."""
         return np.asarray(self.shape.grid.dy * contact.pressure.sum(axis=1))
 
-    def _take_step(self, state: State, length: float) -> State:
+    def _take_step(self, state: Wear, length: float) -> Wear:
         """Take one step, or a predictor and a corrector if the slip depends on the depth."""
         predicted = self._solve_stages(state, length, state.slip, state.slip)
         last_slip = self.compute_slip(predicted.depth)
@@ -182,7 +182,7 @@ class WearIntegrator:
         first_slip = state.slip + STAGE_FRACTION * (last_slip - state.slip)
         return self._solve_stages(state, length, first_slip, last_slip)
 
-    def _solve_stages(self, state: State, length: float, first_slip: FloatArray, last_slip: FloatArray) -> State:
+    def _solve_stages(self, state: Wear, length: float, first_slip: FloatArray, last_slip: FloatArray) -> Wear:
         """Solve two implicit stages and return the second."""
         first_increment, second_increment = self.rate * length * first_slip, self.rate * length * last_slip
         first_stage = self.solve_contact(state.depth, STAGE_FRACTION * first_increment, state.pressure)
@@ -190,7 +190,7 @@ class WearIntegrator:
         second_stage = self.solve_contact(middle_depth, STAGE_FRACTION * second_increment, first_stage.pressure)
         depth = middle_depth + STAGE_FRACTION * second_increment * self._line_load(second_stage)
         converged = state.converged and first_stage.converged and second_stage.converged
-        return State(state.distance + length, depth, second_stage.pressure, last_slip, converged=converged)
+        return Wear(state.distance + length, depth, second_stage.pressure, last_slip, converged=converged)
 
 
 WEAR_LAWS = ("slip", "work")  # Laws: wear proportional to pressure times slip, or to frictional work
@@ -224,8 +224,7 @@ def wear_in(
         Distance of sliding, or in rolling of rolling, metres. The result contains the states after every step, or
         only the states at the increasing distances of a sequence.
     law : str
-        "slip": the volume is ``k p |slip|`` per area and distance, in full sliding ``k p``; "work": ``k`` times the
-        frictional work.
+        "slip": volume ``k p |slip|`` per area and distance, in full sliding ``k p``; "work": ``k`` times friction work.
     circumference : float, optional
         Length along y of the surface over which the wear is spread, metres; default: the roller's, ``2 pi R``.
     grid : Grid, optional
@@ -244,8 +243,8 @@ def wear_in(
         Along `distance`, beginning with the state before the first step: `wear_depth` and `profile_drop` of the worn
         profile (distance, x), metres, `line_load` (distance, x), N/m, `pressure` (distance, x, y), `worn_volume`, m3,
         `wear_error`, the estimated error of the depth by the steps over the largest depth (the error of the cells is
-        not contained), and `next_step`, metres. In all, `volume_error`: the volume over the volume of the law, minus
-        one. See `worn_profile` for the profile itself.
+        not contained), and `next_step`, metres. `volume_error` is the worn volume over the volume of the law, minus
+        one. See `worn_profile` for the profile.
 
     Raises
     ------
@@ -258,7 +257,7 @@ def wear_in(
     Warns
     -----
     ConvergenceWarning
-        If `max_steps` did not suffice, or a contact did not converge. The last step ends the result.
+        If `max_steps` did not suffice, or a contact did not converge. The result ends at the last step.
 
     Examples
     --------
@@ -286,25 +285,25 @@ def wear_in(
     if not TOLERANCE_RANGE[0] <= tolerance <= TOLERANCE_RANGE[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCE_RANGE[0]:g} to {TOLERANCE_RANGE[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
-    before = Start(_choose_grids(case, grid)) if after is None else _read_last_state(after, case, grid)
+    origin = StartState(_choose_grids(case, grid)) if after is None else _read_last_state(after, case, grid)
     all_steps = np.ndim(distance) == 0
     stops = checks.increasing("distance", in_si("distance", distance, "m"), "metres")
-    if stops[0] < before.distance or stops[-1] <= before.distance:
-        raise InvalidInputError("distance", stops.tolist(), f"beyond {before.distance:g} m, where the wear begins")
+    if stops[0] < origin.distance or stops[-1] <= origin.distance:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {origin.distance:g} m, where the wear begins")
 
-    def start_on(cells: Grid) -> tuple[WearIntegrator, State]:
+    def create_integrator(cells: Grid) -> tuple[WearIntegrator, Wear]:
         integrator = WearIntegrator(
             case=case,
             shape=contact_shape(case, cells, PrescribedLoad(case.normal_load, case.load_position)),
-            settings=Settings(max_iterations=2000),  # of one contact; large steps change the contact area often
+            settings=Settings(max_iterations=2000),  # per contact: long steps change its area in many iterations
             rate=rate / length,
             law=law,
             tolerance=tolerance,
         )
-        first_depth = np.zeros(cells.cells_x) if before.depth is None else before.depth
-        return integrator, integrator.initial_state(before.distance, first_depth, before.error)
+        first_depth = np.zeros(cells.cells_x) if origin.depth is None else origin.depth
+        return integrator, integrator.initial_state(origin.distance, first_depth, origin.error)
 
-    integrator, start = solve_in_first_window(before.grids, start_on)
+    integrator, start = solve_in_first_window(origin.grids, create_integrator)
     if not start.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "a case with friction and slip")
     last_stop = float(stops[-1])
@@ -313,7 +312,7 @@ def wear_in(
         limit = f"at most {MAX_DEPTH:g} of the roller's radius, {case.roller.radius:g} m"
         allowed = f"such that the mean worn depth, {mean_depth:.3g} m, is {limit}"
         raise InvalidInputError("distance", last_stop, allowed, "coefficient is in 1/Pa, distances in metres")
-    step = before.step
+    step = origin.step
     if step is None:
         # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
         contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
@@ -324,7 +323,7 @@ def wear_in(
         if all_steps or state.distance in stops:
             states.append(state)
     inputs = {"coefficient": rate, "law": law, "circumference": float(length), "tolerance": tolerance}
-    worn = _label(integrator, states, length)
+    worn = _label_states(integrator, states, length)
     return with_provenance(worn, case, inputs, {"wear": time.perf_counter() - start_time})
 
 
@@ -343,20 +342,20 @@ def _choose_grids(case: Case, grid: Grid | None) -> Iterable[Grid]:
     return (Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y),)
 
 
-def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> Start:
+def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> StartState:
     """Start from the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
-    check_solved_for(after, case, "after", only=WORN_ATTRIBUTES)
+    check_solved_for(after, case, "after", compared_names=WORN_ATTRIBUTES)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last_state = after.isel(distance=-1) if "distance" in after.dims else after
     cells = labelled_cells("after.pressure", last_state["pressure"], extent=case.body.extent)[1]
     depth = last_state["wear_depth"].values.astype(np.float64)
     error = float(last_state["wear_error"]) * float(depth.max())
-    return Start((cells,), float(last_state["distance"]), depth, error, step=float(last_state["next_step"]))
+    return StartState((cells,), float(last_state["distance"]), depth, error, step=float(last_state["next_step"]))
 
 
-def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatArray, max_steps: int) -> Iterator[State]:
+def _integrate_to_stops(integrator: WearIntegrator, state: Wear, stops: FloatArray, max_steps: int) -> Iterator[Wear]:
     """Integrate to one distance after the other, in at most `max_steps` steps."""
     step_count = 0
     for stop in stops[stops > state.distance]:
@@ -374,10 +373,10 @@ def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatAr
             warnings.warn(message, ConvergenceWarning, stacklevel=2)
 
 
-def _label(integrator: WearIntegrator, states: list[State], length: float) -> xr.Dataset:
-    """Label the states."""
+def _label_states(integrator: WearIntegrator, states: list[Wear], length: float) -> xr.Dataset:
+    """Return the states as a Dataset."""
     case, grid = integrator.case, integrator.shape.grid
-    columns = {name: np.array(values) for name, values in zip(State._fields, zip(*states, strict=True), strict=True)}
+    columns = {name: np.array(values) for name, values in zip(Wear._fields, zip(*states, strict=True), strict=True)}
     depths, pressures = columns["depth"], columns["pressure"]
     x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:

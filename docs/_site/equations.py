@@ -11,12 +11,12 @@ import re
 from latex2mathml.converter import convert
 from mkdocs.structure.pages import Page
 
-DISPLAYED = re.compile(r"^\$\$\n(.*?)^\$\$$", re.DOTALL | re.MULTILINE)
-TAG = re.compile(r"\\tag\{([^}]+)\}")
-BLOCK = re.compile(r'<div class="arithmatex">\\\[(.*?)\\\]</div>', re.DOTALL)
-INLINE = re.compile(r'<span class="arithmatex">\\\((.*?)\\\)</span>', re.DOTALL)
-IN_NOTEBOOK = re.compile(r"(?<![\\$\w])\$([^$<>\n]{1,60})\$(?![\w$])")
-FUNCTION = re.compile(
+DISPLAYED_EQUATION = re.compile(r"^\$\$\n(.*?)^\$\$$", re.DOTALL | re.MULTILINE)
+NUMBER_TAG = re.compile(r"\\tag\{([^}]+)\}")
+RENDERED_BLOCK = re.compile(r'<div class="arithmatex">\\\[(.*?)\\\]</div>', re.DOTALL)
+RENDERED_INLINE = re.compile(r'<span class="arithmatex">\\\((.*?)\\\)</span>', re.DOTALL)
+NOTEBOOK_FORMULA = re.compile(r"(?<![\\$\w])\$([^$<>\n]{1,60})\$(?![\w$])")
+FUNCTION_NAME = re.compile(
     r"<mi>(?:sin|cos|sinh|cosh|tanh|coth|exp|ln)</mi>(?=<m[in])|(?<=</m[in]>)(?=<mi>(?:sin|cos|sinh|cosh|tanh|coth)</mi>)"
 )
 CODE = re.compile(r"(<pre.*?</pre>|<code.*?</code>|<script.*?</script>|<style.*?</style>)", re.DOTALL)
@@ -25,32 +25,34 @@ CODE = re.compile(r"(<pre.*?</pre>|<code.*?</code>|<script.*?</script>|<style.*?
 def on_page_markdown(markdown: str, **_: object) -> str:
     """Put an anchor before every numbered equation."""
 
-    def anchored(match: re.Match[str]) -> str:
-        tag = TAG.search(match[1])
+    def add_anchor(match: re.Match[str]) -> str:
+        tag = NUMBER_TAG.search(match[1])
         return f'<div class="anchor" id="eq-{tag[1]}"></div>\n\n{match[0]}' if tag else match[0]
 
-    return DISPLAYED.sub(anchored, markdown)
+    return DISPLAYED_EQUATION.sub(add_anchor, markdown)
 
 
 def on_page_content(content: str, *, page: Page, **_: object) -> str:
     """Replace TeX by MathML."""
-    content = BLOCK.sub(_block, content)
-    content = INLINE.sub(lambda match: _mathml(html.unescape(match[1])), content)
+    content = RENDERED_BLOCK.sub(_render_block, content)
+    content = RENDERED_INLINE.sub(lambda match: _render_mathml(html.unescape(match[1])), content)
     if page.file.src_uri.endswith(".ipynb"):
-        parts = CODE.split(content)
-        parts[::2] = [IN_NOTEBOOK.sub(lambda match: _mathml(html.unescape(match[1])), part) for part in parts[::2]]
-        content = "".join(parts)
+        texts = CODE.split(content)
+        texts[::2] = [
+            NOTEBOOK_FORMULA.sub(lambda match: _render_mathml(html.unescape(match[1])), text) for text in texts[::2]
+        ]
+        content = "".join(texts)
     return content
 
 
-def _block(match: re.Match[str]) -> str:
+def _render_block(match: re.Match[str]) -> str:
     source = html.unescape(match[1])
-    tag = TAG.search(source)
-    shown = _mathml(TAG.sub("", source).strip(), display="block")
+    tag = NUMBER_TAG.search(source)
+    mathml = _render_mathml(NUMBER_TAG.sub("", source).strip(), display="block")
     number = f'<span class="number">({tag[1]})</span>' if tag else ""
-    return f'<div class="equation"><div>{shown}</div>{number}</div>'
+    return f'<div class="equation"><div>{mathml}</div>{number}</div>'
 
 
-def _mathml(source: str, display: str = "inline") -> str:
+def _render_mathml(source: str, display: str = "inline") -> str:
     """Return TeX as MathML, with a thin space around the names of functions."""
-    return FUNCTION.sub(lambda match: f'{match[0]}<mspace width="0.167em" />', convert(source, display=display))
+    return FUNCTION_NAME.sub(lambda match: f'{match[0]}<mspace width="0.167em" />', convert(source, display=display))

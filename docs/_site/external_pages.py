@@ -12,12 +12,12 @@ from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = ROOT / "studies" / "notebooks"
-ORDER = ("first_steps", "exploring_a_study", "designing_a_profile", "verification")
-LINKED = ("studies/*.toml", "studies/*.py", "LICENSE", "CITATION.cff")
+FIRST_NOTEBOOKS = ("first_steps", "exploring_a_study", "designing_a_profile", "verification")
+LINKED_FILES = ("studies/*.toml", "studies/*.py", "LICENSE", "CITATION.cff")
 """Files that pages link to as they lie in the repository."""
 
 DIAGRAMS = re.compile(r'<script type="module">(?:(?!</script>).)*mermaid.*?</script>', re.DOTALL)
-"""A script in every notebook's page that would load diagrams, of which there are none, from another host."""
+"""Script in every notebook's page that loads diagrams from another host; the notebooks contain no diagrams."""
 
 PAGES = {
     "index.md": "README.md",
@@ -29,9 +29,12 @@ PAGES = {
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Put the notebooks into the navigation."""
-    names = [*ORDER, *sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb") if path.stem not in ORDER)]
-    for shelf in config.nav or []:
-        for entry in next(iter(shelf.values())):
+    names = [
+        *FIRST_NOTEBOOKS,
+        *sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb") if path.stem not in FIRST_NOTEBOOKS),
+    ]
+    for section in config.nav or []:
+        for entry in next(iter(section.values())):
             if isinstance(entry, dict) and entry.get("Notebooks") == "notebooks":
                 entry["Notebooks"] = [f"notebooks/{name}.ipynb" for name in names]
     return config
@@ -43,7 +46,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for path in sorted(NOTEBOOKS.glob("*.ipynb")):
         name = f"notebooks/{path.name}"
         files.append(File(name, str(NOTEBOOKS.parent), config.site_dir, use_directory_urls=config.use_directory_urls))
-    for pattern in LINKED:
+    for pattern in LINKED_FILES:
         for path in sorted(ROOT.glob(pattern)):
             files.append(File.generated(config, str(path.relative_to(ROOT)), content=path.read_bytes()))
     for page, source in PAGES.items():

@@ -29,12 +29,12 @@ from contactstudy.arrays import vocabulary
 from contactstudy.cli import command_parser
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.study.parameters import parameter_table
-from contactstudy.study.profile_tables import DESIGN, PROFILES
+from contactstudy.study.profile_tables import DESIGN_KEYS, PROFILES
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
-SCRIPT = re.compile(r"^\[(\w+\.py)\]\(\1\)$", re.MULTILINE)
-WHOLE = (
+SCRIPT_LINK = re.compile(r"^\[(\w+\.py)\]\(\1\)$", re.MULTILINE)
+COMPLETE_PACKAGES = (
     "analysis",
     "bearing",
     "design",
@@ -52,7 +52,7 @@ WHOLE = (
 )
 """Packages whose pages contain all names of ``__all__``, also names that ``contactstudy`` does not export."""
 
-FIRST = (
+READING_ORDER = (
     "solution",
     "case",
     "bodies",
@@ -75,13 +75,13 @@ FIRST = (
 """The order in which a reader needs the folders; any other follows."""
 
 
-def table(head: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
+def format_table(header: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
     """Markdown of a table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in line) + " |" for line in lines)
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in lines)
 
 
-def code(*values: object) -> str:
+def format_code(*values: object) -> str:
     """Values as code, with commas."""
     return ", ".join(f"`{value}`" for value in values)
 
@@ -100,51 +100,51 @@ def profile_kinds() -> str:
     rows = []
     for name, kind in PROFILES.items():
         keys = [
-            code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
+            format_code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
             for entry in fields(kind.profile_class)
         ]
         if kind.design_fields:
-            keys.append(code(*DESIGN))
+            keys.append(format_code(*DESIGN_KEYS))
         if name == "measured":
-            keys.append(code("file"))
+            keys.append(format_code("file"))
         rows.append(
             (
-                code(name),
+                format_code(name),
                 f"[`{kind.profile_class.__name__}`][contactstudy.profiles.{kind.profile_class.__name__}]",
                 ", ".join(keys),
             )
         )
-    return table(("kind", "class", "keys, with a default in brackets"), rows)
+    return format_table(("kind", "class", "keys, with a default in brackets"), rows)
 
 
 def measures() -> str:
     """Return the names of the stress measures."""
-    return code(*MEASURES)
+    return format_code(*MEASURES)
 
 
 # ------------------------------------------------------------------------------------------------ variables
 
 
-def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
+def _variable_table(entries: Mapping[str, vocabulary.Variable]) -> str:
     """Every field of a specification: dims as code, the other fields as text."""
     kind = vocabulary.Variable
     names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
     columns = [name for name in names if name not in ("dims", "comment")]
     headings = {"long_name": "meaning", "units": "unit"}
 
-    def shown(name: str, entry: vocabulary.Variable) -> str:
+    def format_field(name: str, entry: vocabulary.Variable) -> str:
         text = str(getattr(entry, name) or "")
         if name == "long_name" and entry.comment:
             return f"{text}, {entry.comment}"
         return f"${text.strip('$')}$" if name == "symbol" and text else text
 
-    return table(
+    return format_table(
         ("variable", "dimensions", *(headings.get(name, name) for name in columns)),
         [
             (
-                code(name),
+                format_code(name),
                 ", ".join(entry.dims) or "scalar",
-                *(shown(column, entry) for column in columns),
+                *(format_field(column, entry) for column in columns),
             )
             for name, entry in entries.items()
         ],
@@ -153,18 +153,18 @@ def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
 
 def coordinates() -> str:
     """Return the coordinates of every Dataset."""
-    return _specifications(vocabulary.COORDINATES)
+    return _variable_table(vocabulary.COORDINATES)
 
 
 def dataset_variables() -> str:
     """Return the variables of every Dataset, one table for each subject, in the order and the words of the code."""
-    parts, subjects = [], list(_subjects())
+    sections, subjects = [], list(_subjects())
     missing = vocabulary.VARIABLES.keys() - {name for _, entries, _ in subjects for name in entries}
     if missing:
         raise ValueError(f"variables of a subject without a meaning on its first line: {sorted(missing)}")
     for name, entries, meaning in subjects:
-        parts.append(f"### {name.replace('_', ' ').capitalize()}\n\n{meaning}\n\n{_specifications(entries)}")
-    return "\n\n".join(parts)
+        sections.append(f"### {name.replace('_', ' ').capitalize()}\n\n{meaning}\n\n{_variable_table(entries)}")
+    return "\n\n".join(sections)
 
 
 def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
@@ -176,7 +176,7 @@ def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
 
 def naming_rules() -> str:
     """Return the names that are made of other names."""
-    return _specifications(vocabulary.RULES)
+    return _variable_table(vocabulary.RULES)
 
 
 # ------------------------------------------------------------------------------------------------ command line
@@ -186,11 +186,11 @@ def command_line() -> str:
     """Return every command with its arguments, from the parser."""
     parser = command_parser()
     commands = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    parts = [_arguments(parser)]
+    texts = [_arguments(parser)]
     for name, command in commands.choices.items():
         usage = " ".join(command.format_usage().removeprefix("usage: ").split())
-        parts.append(f"## {name}\n\n{command.description}\n\n```sh\n{usage}\n```\n\n{_arguments(command)}")
-    return "\n\n".join([*parts, f"## Exit codes\n\n{(parser.epilog or '').removeprefix('Exit codes: ').capitalize()}"])
+        texts.append(f"## {name}\n\n{command.description}\n\n```sh\n{usage}\n```\n\n{_arguments(command)}")
+    return "\n\n".join([*texts, f"## Exit codes\n\n{(parser.epilog or '').removeprefix('Exit codes: ').capitalize()}"])
 
 
 def _arguments(parser: argparse.ArgumentParser) -> str:
@@ -199,10 +199,10 @@ def _arguments(parser: argparse.ArgumentParser) -> str:
         if isinstance(action, argparse._SubParsersAction):
             continue
         names = [f"{name} {action.metavar}" if action.metavar else name for name in action.option_strings]
-        chosen = f": {code(*action.choices)}" if action.choices else ""
+        choices_text = f": {format_code(*action.choices)}" if action.choices else ""
         meaning = html.escape(action.help or "", quote=False)
-        rows.append((code(*(names or [str(action.metavar)])), meaning + chosen))
-    return table(("argument", "meaning"), rows)
+        rows.append((format_code(*(names or [str(action.metavar)])), meaning + choices_text))
+    return format_table(("argument", "meaning"), rows)
 
 
 # ------------------------------------------------------------------------------------------------ the package
@@ -210,7 +210,7 @@ def _arguments(parser: argparse.ArgumentParser) -> str:
 
 def layers() -> str:
     """Return the layers of the package from the top down, from their contract in pyproject.toml."""
-    return table(
+    return format_table(
         ("layer", "what it does"),
         [
             (
@@ -232,9 +232,9 @@ def _layers() -> list[list[str]]:
 def quadrature() -> str:
     """Return the settings of the quadratures."""
     meanings = _parameters(Resolution)
-    return table(
+    return format_table(
         ("setting", "value", "meaning"),
-        [(code(entry.name), f"{entry.default:.4g}", meanings[entry.name]) for entry in fields(Resolution)],
+        [(format_code(entry.name), f"{entry.default:.4g}", meanings[entry.name]) for entry in fields(Resolution)],
     )
 
 
@@ -251,8 +251,8 @@ def modules() -> str:
     for folder in sorted((ROOT / "contactstudy").iterdir()):
         if folder.is_dir() and (folder / "__init__.py").exists():
             names = [module.name for module in pkgutil.iter_modules([str(folder)])]
-            rows.append((code(folder.name + "/"), code(*names)))
-    return table(("folder", "modules"), rows)
+            rows.append((format_code(folder.name + "/"), format_code(*names)))
+    return format_table(("folder", "modules"), rows)
 
 
 def material_table() -> str:
@@ -260,8 +260,10 @@ def material_table() -> str:
     rows = []
     for name, source in materials.SOURCES.items():
         material = getattr(materials, name)
-        rows.append((code(f"cs.materials.{name}"), f"{1e-9 * material.young:g}", f"{material.poisson:g}", source))
-    return table(("name", "E, GPa", "nu", "description and source"), rows)
+        rows.append(
+            (format_code(f"cs.materials.{name}"), f"{1e-9 * material.young:g}", f"{material.poisson:g}", source)
+        )
+    return format_table(("name", "E, GPa", "nu", "description and source"), rows)
 
 
 TABLES: dict[str, Callable[[], str]] = {
@@ -284,27 +286,32 @@ TABLES: dict[str, Callable[[], str]] = {
 
 def python_pages() -> dict[str, str]:
     """Return the Python reference: Markdown of one page for each folder with public names, as a reader needs them."""
-    shown: dict[str, list[str]] = {}
+    entries: dict[str, list[str]] = {}
     for name in sorted(contactstudy.__all__, key=lambda name: name != "solve"):
         value = getattr(contactstudy, name)
-        home = value.__name__ if isinstance(value, ModuleType) else value.__module__
-        folder = home.split(".")[1]
-        if not (isinstance(value, ModuleType) and folder in WHOLE):
-            shown.setdefault(folder, []).append(_entry(f"contactstudy.{name}", value))
-    for folder in WHOLE:
+        module_name = value.__name__ if isinstance(value, ModuleType) else value.__module__
+        folder = module_name.split(".")[1]
+        if not (isinstance(value, ModuleType) and folder in COMPLETE_PACKAGES):
+            entries.setdefault(folder, []).append(_reference_directive(f"contactstudy.{name}", value))
+    for folder in COMPLETE_PACKAGES:
         package = importlib.import_module(f"contactstudy.{folder}")
-        known = shown.setdefault(folder, [])
-        handed_on = [name for name in package.__all__ if name not in contactstudy.__all__]
-        known += [_entry(f"contactstudy.{folder}.{name}", getattr(package, name)) for name in handed_on]
-    order = [*(name for name in FIRST if name in shown), *(name for name in shown if name not in FIRST)]
+        folder_entries = entries.setdefault(folder, [])
+        names = [name for name in package.__all__ if name not in contactstudy.__all__]
+        folder_entries += [
+            _reference_directive(f"contactstudy.{folder}.{name}", getattr(package, name)) for name in names
+        ]
+    order = [
+        *(name for name in READING_ORDER if name in entries),
+        *(name for name in entries if name not in READING_ORDER),
+    ]
     pages = {}
     for folder in order:
-        text = _linked((importlib.import_module(f"contactstudy.{folder}").__doc__ or "").strip(), folder)
-        pages[f"reference/api/{folder}.md"] = "\n\n".join([f"# {folder}", text, *shown[folder]]) + "\n"
+        text = _add_links((importlib.import_module(f"contactstudy.{folder}").__doc__ or "").strip(), folder)
+        pages[f"reference/api/{folder}.md"] = "\n\n".join([f"# {folder}", text, *entries[folder]]) + "\n"
     return pages
 
 
-def _linked(text: str, folder: str) -> str:
+def _add_links(text: str, folder: str) -> str:
     """Return a module's docstring without its table of files, with links and Markdown's literal blocks."""
 
     def link(match: re.Match[str]) -> str:
@@ -317,13 +324,13 @@ def _linked(text: str, folder: str) -> str:
     return re.sub(r":\w+:`~?([\w.]+)`", link, text).replace("::\n\n", ":\n\n")
 
 
-def _entry(path: str, value: object) -> str:
+def _reference_directive(path: str, value: object) -> str:
     """Return the directive that documents one public name."""
     if not isinstance(value, ModuleType):
         return f"::: {path}"
     tree = ast.parse(Path(str(value.__file__)).read_text())
-    defined = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
-    names = [name for name in getattr(value, "__all__", defined) if not name.startswith("_")]
+    defined_names = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    names = [name for name in getattr(value, "__all__", defined_names) if not name.startswith("_")]
     members = "".join(f"\n        - {name}" for name in names)
     return f"::: {value.__name__}\n    options:\n      heading: {path}\n      members:{members}\n"
 
@@ -333,8 +340,8 @@ def _entry(path: str, value: object) -> str:
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Put the pages of the Python reference into the navigation."""
-    for shelf in config.nav or []:
-        for entry in next(iter(shelf.values())):
+    for section in config.nav or []:
+        for entry in next(iter(section.values())):
             if isinstance(entry, dict) and entry.get("Python") == "api":
                 entry["Python"] = list(python_pages())
     return config
@@ -355,5 +362,5 @@ def script(name: str) -> str:
 
 def on_page_markdown(markdown: str, **_: object) -> str:
     """Fill in the tables and the scripts of the gallery."""
-    markdown = SCRIPT.sub(lambda match: script(match[1]), markdown)
+    markdown = SCRIPT_LINK.sub(lambda match: script(match[1]), markdown)
     return MARKER.sub(lambda match: TABLES[match[1]](), markdown)

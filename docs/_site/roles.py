@@ -19,11 +19,11 @@ class Roles(Extension):
             obj.docstring.value = text.replace("::\n\n", ":\n\n")
 
 
-def _link(obj: Object, name: str, short: bool) -> str:
+def _link(obj: Object, name: str, is_short: bool) -> str:
     """Return a link that stays plain code where the name is not documented on its own."""
     try:
         target = name if name.startswith("contactstudy.") else obj.resolve(name)
     except (NameResolutionError, AliasResolutionError):
         target = name
-    shown = name.rpartition(".")[2] if short or name.startswith("contactstudy.") else name
-    return f'<autoref optional identifier="{target}"><code>{shown}</code></autoref>'
+    text = name.rpartition(".")[2] if is_short or name.startswith("contactstudy.") else name
+    return f'<autoref optional identifier="{target}"><code>{text}</code></autoref>'

@@ -15,10 +15,10 @@ hertz = (np.sqrt(np.maximum(1 - grid.y**2, 0)) * np.ones(grid.shape)).ravel()
 figure, axes = pyplot.subplots(3, 2, figsize=(5.4, 6.6), layout="constrained")
 for column, load, name in zip(axes.T, ("pressure", "traction_y"), ("pressure", "traction along y"), strict=True):
     method = Overlapping(body=body, grid=grid, z=depths, load=load)
-    added = (method.P_h1 @ hertz).reshape(grid.shape) - (hertz.reshape(grid.shape) if load == "pressure" else 0.0)
+    excess = (method.P_h1 @ hertz).reshape(grid.shape) - (hertz.reshape(grid.shape) if load == "pressure" else 0.0)
     faces = [(operator @ hertz).reshape(grid.cells_y, -1) for operator in (method.P_v1, method.P_v2)]
     titles = (r"$P_{h1} - p$" if load == "pressure" else r"$P_{h1}$", r"$P_{v1}$", r"$P_{v2}$")
-    panels = [(grid.x, grid.y, added.T), *((grid.y, depths, face.T) for face in faces)]
+    panels = [(grid.x, grid.y, excess.T), *((grid.y, depths, face.T) for face in faces)]
     for axis, title, (along, down, values) in zip(column, titles, panels, strict=True):
         limit = np.abs(values).max()
         image = axis.pcolormesh(along, down, values, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="gouraud")

@@ -22,8 +22,8 @@ panels = {"Dang Van": cs.fatigue.dang_van(result, limits), "Findley": cs.fatigue
 figure, axes = pyplot.subplots(2, 1, figsize=(5.2, 4.6), sharex=True, layout="constrained")
 for ax, (name, criterion) in zip(axes, panels.items(), strict=True):
     values = criterion["utilisation"].transpose("z", ...)
-    filled = ax.contourf(1e3 * values["x_field"], 1e6 * values["z"], values, levels=12, cmap=cs.plots.COLORS)
-    figure.colorbar(filled, ax=ax, label=f"{name}, 1 is the limit")
+    contours = ax.contourf(1e3 * values["x_field"], 1e6 * values["z"], values, levels=12, cmap=cs.plots.COLORS)
+    figure.colorbar(contours, ax=ax, label=f"{name}, 1 is the limit")
     ax.set(ylabel="depth (µm)")
     ax.invert_yaxis()
 axes[1].set(xlabel="distance from the free end (mm)")

@@ -18,9 +18,9 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-RECORD = HERE / "figures.json"
+GALLERY = Path(__file__).resolve().parent
+ROOT = GALLERY.parents[1]
+RECORD = GALLERY / "figures.json"
 BLOCKS = re.compile(r"^```(python|toml)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
@@ -71,73 +71,77 @@ PROGRAMS = {
 """Programs of figures that have no script of their name."""
 
 
-def sources_of(name: str) -> list[Path]:
+def find_sources(name: str) -> list[Path]:
     """Files that contain the code of a figure."""
     if name in PROGRAMS:
         sources = [ROOT / source for source in PROGRAMS[name].sources]
         return [file for source in sources for file in (sorted(source.glob("*.py")) if source.is_dir() else [source])]
     page = ROOT / "docs" / "tutorial" / f"{name}.md"
-    return [page if page.exists() else HERE / f"{name}.py"]
+    return [page if page.exists() else GALLERY / f"{name}.py"]
 
 
-def blocks_of(page: Path, language: str) -> str:
+def find_blocks(page: Path, language: str) -> str:
     """Blocks of a page in a language, one after the other."""
     return "\n".join(text for name, text in BLOCKS.findall(page.read_text()) if name == language)
 
 
-def code_of(source: Path) -> str:
+def read_code(source: Path) -> str:
     """Python code of a module, or of a page's blocks."""
-    return blocks_of(source, "python") if source.suffix == ".md" else source.read_text()
+    return find_blocks(source, "python") if source.suffix == ".md" else source.read_text()
 
 
-def names() -> list[str]:
+def figure_names() -> list[str]:
     """Names of all figures with code."""
-    scripts = {path.stem for path in HERE.glob("*.py")} - {"figures", "screens"}
+    scripts = {path.stem for path in GALLERY.glob("*.py")} - {"figures", "screens"}
     pages = {path.stem for path in (ROOT / "docs" / "tutorial").glob("*.md")} - {"index"}
     return sorted(scripts | pages | PROGRAMS.keys())
 
 
-def studies_of(code: str) -> list[Path]:
+def find_studies(code: str) -> list[Path]:
     """Study files that code names."""
     return [ROOT / "studies" / file for file in sorted(set(re.findall(r"\w+\.toml", code)))]
 
 
-def statements(source: Path) -> str:
+def parse_syntax(source: Path) -> str:
     """Syntax tree of a module or page without comments and docstrings."""
-    tree = ast.parse(code_of(source))
+    tree = ast.parse(read_code(source))
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
-            node.body = [entry for entry in node.body if not is_text(entry)]
-    return repr(structure(tree))
+            node.body = [entry for entry in node.body if not is_docstring(entry)]
+    return repr(describe_structure(tree))
 
 
-def structure(node: object) -> object:
+def describe_structure(node: object) -> object:
     """Types and filled fields of a syntax tree, which are the same in each version of Python."""
     if isinstance(node, list):
-        return [structure(entry) for entry in node]
+        return [describe_structure(entry) for entry in node]
     if isinstance(node, ast.AST):
         return type(node).__name__, [
-            (name, structure(value)) for name, value in ast.iter_fields(node) if value not in (None, [])
+            (name, describe_structure(value)) for name, value in ast.iter_fields(node) if value not in (None, [])
         ]
     return node
 
 
-def is_text(node: ast.stmt) -> bool:
+def is_docstring(node: ast.stmt) -> bool:
     """Whether a statement is a docstring."""
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def digests() -> dict[str, str]:
+def compute_hashes() -> dict[str, str]:
     """Hash of each figure's code, of the study files that it names, and of the modules of `plots` that it calls."""
     modules = sorted((ROOT / "contactstudy" / "plots").glob("[!_]*.py"))
     hashes = {}
-    for name in names():
-        sources = sources_of(name)
-        code = "\n".join(map(code_of, sources))
-        called = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
-        used = [module for module in modules if called & set(re.findall(r"^def (\w+)", code_of(module), re.MULTILINE))]
-        settings = [blocks_of(source, "toml") for source in sources if source.suffix == ".md"]
-        text = "".join([*map(statements, sources + used), *settings, *map(Path.read_text, studies_of(code))])
+    for name in figure_names():
+        sources = find_sources(name)
+        code = "\n".join(map(read_code, sources))
+        functions = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
+        modules_used = [
+            module for module in modules if functions & set(re.findall(r"^def (\w+)", read_code(module), re.MULTILINE))
+        ]
+        settings = [find_blocks(source, "toml") for source in sources if source.suffix == ".md"]
+        text = "".join(
+            [*map(parse_syntax, sources + modules_used), *settings, *map(Path.read_text, find_studies(code))]
+        )
         hashes[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
     return hashes
 
@@ -146,14 +150,14 @@ def draw(name: str) -> None:
     """Draw a figure, and record the hash of its code."""
     (ROOT / "results").mkdir(exist_ok=True)
     environment = os.environ | {"MPLBACKEND": "Agg"}
-    code = "\n".join(map(code_of, sources_of(name)))
+    code = "\n".join(map(read_code, find_sources(name)))
     if name in PROGRAMS:
         program = PROGRAMS[name]
         if program.command.startswith("studies/"):
-            for study in studies_of(code):
+            for study in find_studies(code):
                 subprocess.run([sys.executable, "-m", "contactstudy.cli", "run", study], cwd=ROOT, check=True)
         subprocess.run([sys.executable, *program.command.split()], cwd=ROOT, env=environment, check=True)
-        shutil.copy(ROOT / program.file, HERE / f"{name}.png")
+        shutil.copy(ROOT / program.file, GALLERY / f"{name}.png")
     else:
         with tempfile.TemporaryDirectory() as folder:
             for shared in ("studies", "results"):
@@ -161,12 +165,12 @@ def draw(name: str) -> None:
             script = Path(folder, f"{name}_figure.py")
             script.write_text(code)
             subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
-            shutil.copy(Path(folder, f"{name}.png"), HERE)
+            shutil.copy(Path(folder, f"{name}.png"), GALLERY)
     stored = json.loads(RECORD.read_text()) if RECORD.exists() else {}
-    RECORD.write_text(json.dumps(dict(sorted((stored | {name: digests()[name]}).items())), indent=1) + "\n")
+    RECORD.write_text(json.dumps(dict(sorted((stored | {name: compute_hashes()[name]}).items())), indent=1) + "\n")
 
 
 if __name__ == "__main__":
     stored = json.loads(RECORD.read_text()) if RECORD.exists() else {}
-    for figure in sys.argv[1:] or [name for name, value in digests().items() if stored.get(name) != value]:
+    for figure in sys.argv[1:] or [name for name, value in compute_hashes().items() if stored.get(name) != value]:
         draw(figure)

@@ -1,4 +1,4 @@
-"""Moes' formula for the central film of a line contact against films with settled inlets."""
+"""Moes' formula for the central film of a line contact against films with converged inlets."""
 
 import numpy as np
 from matplotlib import pyplot

@@ -14,9 +14,9 @@ case = cs.Case(
 )
 metal = cs.heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
 result = cs.solve(case, accuracy=0.003, stresses=False)
-hot = cs.heat.flash_temperature(case, result, body=metal, roller=metal)
+temperatures = cs.heat.flash_temperature(case, result, body=metal, roller=metal)
 
 figure, ax = pyplot.subplots(figsize=(5.2, 3.0), layout="constrained")
-cs.plots.plot_temperature_map(hot, ax=ax)
+cs.plots.plot_temperature_map(temperatures, ax=ax)
 ax.set_xlim(16, 21)
 figure.savefig("flash_temperature.png", dpi=200)

@@ -9,13 +9,13 @@ steel = cs.Material(young=210e9, poisson=0.3)
 crown = cs.profiles.Lundberg(amplitude=1.5e-6)
 
 
-def contact(relative_radius: float, width: float) -> cs.Case:
+def create_case(relative_radius: float, width: float) -> cs.Case:
     """Return the roller on one raceway, as two elastic bodies of steel."""
     roller = cs.Roller(radius=relative_radius, length=10e-3, profile=crown, material=steel)
     return cs.Case(body=cs.FiniteLengthSpace(length=width, material=steel), roller=roller, load=3000.0, tilt=0.5e-3)
 
 
-inner, outer = contact(4e-3, width=10.5e-3), contact(6e-3, width=12e-3)
+inner, outer = create_case(4e-3, width=10.5e-3), create_case(6e-3, width=12e-3)
 life = cs.bearing.reference_life(inner, outer, cs.bearing.roller_ratings(dynamic_rating=30e3, rollers=14, gamma=0.2))
 
 figure, axes = pyplot.subplots(1, 2, figsize=(5.2, 3.0), sharey=True, layout="constrained")

@@ -16,14 +16,14 @@ x = np.concatenate([end, [5e-3], 10e-3 - end[::-1]])
 result = cs.solve(case, x=x, y=a * np.linspace(-3, 3, 49), z=a * np.linspace(0.0, 1.6, 17))
 field = cs.fatigue.shakedown(result)
 plastic = cs.plasticity.ElasticPlastic(yield_stress=1.4e9, kinematic_hardening=10e9)
-after = cs.plasticity.residual_stress(result, body, plastic, passes=5).isel(pass_number=-1)
+residual = cs.plasticity.residual_stress(result, body, plastic, passes=5).isel(pass_number=-1)
 
 figure, axes = pyplot.subplots(2, 1, figsize=(5.2, 4.6), sharex=True, layout="constrained")
-panels = {"k for shakedown (MPa)": field["shakedown_stress"], "residual yy (MPa)": after["sigma_yy"]}
+panels = {"k for shakedown (MPa)": field["shakedown_stress"], "residual yy (MPa)": residual["sigma_yy"]}
 for ax, (name, values) in zip(axes, panels.items(), strict=True):
     values = 1e-6 * values.transpose("z", ...)
-    filled = ax.contourf(1e3 * values["x_field"], 1e6 * values["z"], values, levels=12, cmap=cs.plots.COLORS)
-    figure.colorbar(filled, ax=ax, label=name)
+    contours = ax.contourf(1e3 * values["x_field"], 1e6 * values["z"], values, levels=12, cmap=cs.plots.COLORS)
+    figure.colorbar(contours, ax=ax, label=name)
     ax.set(ylabel="depth (µm)")
     ax.invert_yaxis()
 axes[1].set(xlabel="distance from the free end (mm)", xlim=(0, 2))

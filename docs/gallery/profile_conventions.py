@@ -11,7 +11,7 @@ from contactstudy import profiles
 STEEL, ROLLER = "0.88", "0.72"
 
 
-def dimension(ax: Axes, start: tuple[float, float], stop: tuple[float, float], text: str = "") -> None:
+def draw_dimension(ax: Axes, start: tuple[float, float], stop: tuple[float, float], text: str = "") -> None:
     """Draw a line with an arrow at both ends, and its name in the middle."""
     ax.annotate("", start, stop, arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.9})
     if text:
@@ -43,17 +43,17 @@ def draw_conventions(ax: Axes) -> None:
     ax.text(start + length + 0.75, top, "axis", va="center", fontsize="small")
     position = start + 0.14 * fillet
     depth = float(crown.drop(np.array([position - middle]), length)[0])
-    dimension(ax, (position, 0), (position, depth))
+    draw_dimension(ax, (position, 0), (position, depth))
     ax.text(position - 0.25, 0.5 * depth, "drop", ha="right", va="center", fontsize="small")
-    dimension(ax, (middle - 2.4, 0), (middle - 2.4, top), "radius at mid-length")
+    draw_dimension(ax, (middle - 2.4, 0), (middle - 2.4, top), "radius at mid-length")
     ax.plot([middle, middle], [-0.9, top], color="0.35", linewidth=0.7, linestyle=":")
     ax.annotate("", (middle + 1.8, 1.4), (middle, 1.4), arrowprops={"arrowstyle": "->", "linewidth": 0.9})
     ax.text(middle + 0.15, 1.65, "x of a profile", fontsize="small")
     for edge in (start, start + length):
         ax.plot([edge, edge], [0, -1.0], color="0.35", linewidth=0.7)
-    dimension(ax, (start, -0.75), (start + length, -0.75), "roller's length")
-    dimension(ax, (0, -0.75), (start, -0.75), "e")
-    dimension(ax, (0, -1.65), (body, -1.65), "body's length")
+    draw_dimension(ax, (start, -0.75), (start + length, -0.75), "roller's length")
+    draw_dimension(ax, (0, -0.75), (start, -0.75), "e")
+    draw_dimension(ax, (0, -1.65), (body, -1.65), "body's length")
     ax.annotate(
         "fillet\n(corner radius)",
         (start + length - 0.3 * fillet, float(crown.drop(np.array([length / 2 - 0.3 * fillet]), length)[0])),

@@ -14,9 +14,9 @@ case = cs.Case(
     motion=cs.Rolling(longitudinal_creepage=1e-3),
 )
 a = case.hertz_half_width
-half = np.cumsum([0.0, *np.minimum(0.05 * a * 1.05 ** np.arange(130), 1.5 * a)])  # narrow at the free end
-half *= 5e-3 / half[-1]
-grid = cs.Grid.from_edges([*half, *(10e-3 - half[-2::-1])], (-1.4 * a, 1.4 * a), 56)
+half_edges = np.cumsum([0.0, *np.minimum(0.05 * a * 1.05 ** np.arange(130), 1.5 * a)])  # narrow at the free end
+half_edges *= 5e-3 / half_edges[-1]
+grid = cs.Grid.from_edges([*half_edges, *(10e-3 - half_edges[-2::-1])], (-1.4 * a, 1.4 * a), 56)
 result = cs.solve(case, grid, stresses=False)
 
 figure, ax = pyplot.subplots(figsize=(5.2, 4.0), layout="constrained")

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "results"
 
 
-def of_report(folder: Path) -> None:
+def capture_report(folder: Path) -> None:
     """Write the report of the page's case, and keep its top as a picture."""
     text = (ROOT / "docs" / "how-to" / "report.md").read_text()
     (block, *_) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
@@ -31,7 +31,7 @@ def of_report(folder: Path) -> None:
         page.screenshot(path=RESULTS / "report.png")
 
 
-def of_explore(folder: Path) -> None:
+def capture_explorer(folder: Path) -> None:
     """Solve the study of the page, serve it, and keep the page with two cases as a picture."""
     text = (ROOT / "docs" / "how-to" / "explore.md").read_text()
     (block,) = re.findall(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
@@ -55,4 +55,4 @@ def of_explore(folder: Path) -> None:
 if __name__ == "__main__":
     for picture in sys.argv[1:]:
         with tempfile.TemporaryDirectory() as folder:
-            {"report": of_report, "explore": of_explore}[picture](Path(folder))
+            {"report": capture_report, "explore": capture_explorer}[picture](Path(folder))

@@ -62,7 +62,7 @@ def test_differing_cases(result: xr.Dataset, case, message: str) -> None:
 
 
 def test_comparison_of_parts(result: xr.Dataset) -> None:
-    check_solved_for(result, replace(CASE, friction=0.1, max_pressure=1e9), only=("body", "roller"))
+    check_solved_for(result, replace(CASE, friction=0.1, max_pressure=1e9), compared_names=("body", "roller"))
 
 
 def test_case_of_an_opened_study(study_dataset: xr.Dataset) -> None:

@@ -17,7 +17,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.analysis.roller_slices import Columns, border_load_errors, maximum_between, power_means
+from contactstudy.analysis.roller_slices import Columns, border_load_errors, find_maxima, power_means
 from contactstudy.arrays.variables import ERROR_KIND, ESTIMATED, NOT_ESTIMATED
 from contactstudy.study import Study, open_study, run_study
 from tests.split_columns import split_columns
@@ -129,7 +129,7 @@ def test_mirrored_slices() -> None:
     for name in ("axial_pressure", "axial_pressure_error", "normal_load", "normal_load_error"):
         values = table[name].values
         assert values == pytest.approx(values[::-1], rel=1e-6, abs=1e-9 * values.max())
-    pressures, errors = maximum_between(
+    pressures, errors = find_maxima(
         Columns(
             np.stack([np.arange(6.0), np.arange(6.0) + 1], axis=-1), np.arange(6) + 0.5, np.array([0, 0, 0, 5, 5, 5])
         ),
@@ -191,7 +191,7 @@ def test_error_kinds(case_result: xr.Dataset) -> None:
 def test_values_of_parts_between_borders() -> None:
     edges, borders = np.array([[0.0, 1], [1, 2], [2, 3], [3, 4]]), np.array([0.0, 2.0, 4.0])
     pressure = Columns(edges, edges.mean(axis=1), np.array([1.0, 1, 2, 2]))
-    maximum, error = maximum_between(pressure, borders)
+    maximum, error = find_maxima(pressure, borders)
     np.testing.assert_allclose((maximum, error), ([np.sqrt(2.5), 2.0], [0.5, 0.5]))
     np.testing.assert_allclose(border_load_errors(pressure, borders), [0.25, 0.25])
     means = power_means(Columns(edges, edges.mean(axis=1), np.array([1.0, 1, 1, 3])), borders, 1.0)

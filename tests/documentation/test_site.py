@@ -39,7 +39,7 @@ def test_pages_show_pictures_with_links_to_their_scripts() -> None:
 
 def test_figures_are_as_new_as_their_code() -> None:
     gallery = ROOT / "docs" / "gallery"
-    digests = runpy.run_path(str(gallery / "figures.py"))["digests"]()
+    digests = runpy.run_path(str(gallery / "figures.py"))["compute_hashes"]()
     stored_digests = json.loads((gallery / "figures.json").read_text())
     old = sorted(name for name, value in digests.items() if stored_digests.get(name) != value)
     assert not old, f"python docs/gallery/figures.py {' '.join(old)}"

@@ -85,7 +85,7 @@ def test_figures_follow_chosen_case(page: Page) -> None:
     page.choices[0]["max_pressure"].value = 2
     assert ">1.5 GPa<" in page.table.object
     assert largest_drawn(page)[0] == pytest.approx(1.5 * first_maximum[0], rel=0.05)
-    assert page.study._marked.data["x"] == [1.5]
+    assert page.study._case_marks.data["x"] == [1.5]
     page.units.value = True
     assert largest_drawn(page)[0] == pytest.approx(first_maximum[0] / 1000, rel=0.05)
 
@@ -135,7 +135,7 @@ def test_failed_case(page: Page) -> None:
     assert ">failed<" in page.table.object
     assert "This case failed. WindowError: this friction fails in tests" in page.table.object
     assert page.surface_figures[0]._source.data["image"] == []
-    assert np.isnan(page.study._marked.data["v"]).all()
+    assert np.isnan(page.study._case_marks.data["v"]).all()
     assert not any(pane.visible for pane in page.panes)  # the page has no empty axes
     assert "No case at these values" in page.table.object
     page.compare.value = True
@@ -173,11 +173,11 @@ def test_numbers_by_subject(page: Page) -> None:
     assert list(groups) == [subject for subject in SUBJECTS if subject in groups]
     assert list(groups)[:2] == ["pressure", "stresses"]
     assert list(groups)[-1] == "solution"
-    names = [name for group in groups.values() for name in group.values()]
-    assert names[0] == page.number.value == "peak_pressure"
+    axis_labels = [name for group in groups.values() for name in group.values()]
+    assert axis_labels[0] == page.number.value == "peak_pressure"
     floats = {name for name, entry in page.cases.scalars.data_vars.items() if entry.dtype.kind == "f"}
-    assert {name for name in floats if not name.endswith("_error")} >= set(names)
-    assert len(names) == len(set(names)) == len({text for group in groups.values() for text in group})
+    assert {name for name in floats if not name.endswith("_error")} >= set(axis_labels)
+    assert len(axis_labels) == len(set(axis_labels)) == len({text for group in groups.values() for text in group})
     listed_names = [name for subject in SUBJECTS.values() for name in subject]
     assert len(listed_names) == len(set(listed_names))
     assert all(name.endswith("_") or specification(name) for name in listed_names)
@@ -220,7 +220,7 @@ def test_planes_equal_analysis_cuts(folder: Path) -> None:
     for kind in PLANES[1:]:
         image = plane_image(case, scale, limits, kind, 0.0)
         assert image is not None
-        assert image.names[1].startswith("depth" if kind[0] == "x" else "position along rolling")
+        assert image.axis_labels[1].startswith("depth" if kind[0] == "x" else "position along rolling")
     assert plane_image(CaseFields(case.dataset.drop_vars("von_mises")), scale, limits, PLANES[0], 0.5) is None
 
 
@@ -236,7 +236,7 @@ def test_stress_measures_of_the_plane(page: Page, case_result: xr.Dataset) -> No
         titles[name] = float(page.plane_figures[0]._source.data["image"][0].max())
     assert titles["principal_stress_1"] < titles["maximum_shear"] < titles["von_mises"]
     case = CaseFields(case_result)
-    xr.testing.assert_identical(case.stress("principal_stress_1"), measure(case_result, "principal_stress_1"))
+    xr.testing.assert_identical(case.compute_measure("principal_stress_1"), measure(case_result, "principal_stress_1"))
 
 
 def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
@@ -245,9 +245,9 @@ def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
     case = CaseFields(singular.interp(x=x).drop_vars("x_bounds", errors="ignore"))
     scale = choose_scale(case, relative=True)
     line = axial_line(case, scale, region_limits(case, REGIONS[0]))
-    assert len(line.singular) == 1
-    assert np.isnan(line.pressure[np.abs(line.x - line.singular[0]) < 0.05]).all()
-    assert top_image(case, scale, region_limits(case, REGIONS[1])).limit <= np.nanmax(line.pressure) * (1 + 1e-9)
+    assert len(line.singular_ends) == 1
+    assert np.isnan(line.pressure[np.abs(line.x - line.singular_ends[0]) < 0.05]).all()
+    assert top_image(case, scale, region_limits(case, REGIONS[1])).color_limit <= np.nanmax(line.pressure) * (1 + 1e-9)
     low, high = region_limits(case, REGIONS[2])
     assert high - low <= 8 * float(case_result["hertz_half_width"])
 
@@ -332,16 +332,16 @@ def test_unbounded_values_are_triangles() -> None:
     values, x = np.array([2.0, np.inf]), np.array([0.0, 1.0])
     marked_cases = [(0, 2.0, "blue"), (1, np.inf, "red")]
     figure.show(x, values, np.zeros(2), marked_cases=marked_cases, labels=("x", "v"))
-    assert (figure._marked.data["x"], figure._marked.data["color"]) == ([0.0], ["blue"])
-    assert (figure._marked_unbounded.data["x"], figure._marked_unbounded.data["color"]) == ([1.0], ["red"])
+    assert (figure._case_marks.data["x"], figure._case_marks.data["color"]) == ([0.0], ["blue"])
+    assert (figure._case_triangles.data["x"], figure._case_triangles.data["color"]) == ([1.0], ["red"])
     figure.show(x, np.array([np.inf, np.inf]), np.zeros(2), marked_cases=marked_cases[1:], labels=("x", "v"))
     assert figure.figure.y_range.end > 1.0
 
 
 def test_mark_of_rounding() -> None:
-    from contactstudy.explorer.page import _marked_text
+    from contactstudy.explorer.page import _format_number
     from contactstudy.report.tables import Quantity
 
     row = Quantity("force_x", "force along the axis", 0.0, 0.0, "N", text="0 N", remark="below 1e-06", mark="rounding")
-    assert _marked_text(row) == "0 N (below 1e-06)"
-    assert _marked_text(row._replace(mark="")) == "0 N"
+    assert _format_number(row) == "0 N (below 1e-06)"
+    assert _format_number(row._replace(mark="")) == "0 N"

@@ -76,7 +76,7 @@ def test_all_cases_for_matlab(folder) -> None:
     ("options", "message"),
     [
         (["--variable", "presure"], "did you mean 'pressure'"),
-        ([], "name some on the same points"),
+        ([], "name variables on the same points"),
         (["--line", "0,0,0"], "X,Y,Z:X,Y,Z"),
         (["--line", "0,0,0:1,0,0"], "within the result"),
         (["--format", "vtk", "--line", "0,0,0:1,0,0"], "left out for VTK"),

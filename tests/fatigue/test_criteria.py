@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from contactstudy import InvalidInputError, fatigue
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES
 from contactstudy.fatigue import FatigueLimits
-from contactstudy.fatigue.criteria import _compute_damage, _rotate_frames, _worst_planes
+from contactstudy.fatigue.criteria import _compute_damage, _find_worst_planes, _rotate_frames
 
 LIMITS = FatigueLimits(bending=1.0, torsion=0.65)
 CRITERIA = [fatigue.dang_van, fatigue.crossland, fatigue.findley]
@@ -77,7 +77,7 @@ histories = arrays(float, (1, 9, 6), elements=st.floats(-1, 1).map(lambda value:
 @given(history=histories)
 def test_findley_plane_is_the_worst(history: np.ndarray) -> None:
     # For the smooth histories of a passage the search finds the worst plane to 1e-9.
-    result = _worst_planes(history, 0.3)["damage"]
+    result = _find_worst_planes(history, 0.3)["damage"]
     rotations = np.linalg.qr(np.random.default_rng(2).normal(size=(4000, 3, 3)))[0]
     random_damage, _, _ = _compute_damage(history, rotations[None, :, :2], 0.3)
     assert result[0] >= random_damage.max() * (1 - 2e-2)

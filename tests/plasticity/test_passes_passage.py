@@ -12,7 +12,7 @@ from contactstudy import fatigue
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies import Material
 from contactstudy.eigenstrain.body import layer_stresses
-from contactstudy.plasticity.passes import ElasticPlastic, Passage, State
+from contactstudy.plasticity.passes import ElasticPlastic, Passage, PlasticState
 
 YOUNG, POISSON = 1000.0, 0.3
 MATERIAL = Material(YOUNG, POISSON)
@@ -30,19 +30,21 @@ class IndependentLayers:
         return layer_stresses(MATERIAL, eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
 
 
-def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int) -> State:
+def solve_passes(
+    history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int
+) -> PlasticState:
     """Passes over one cell of a history (instant, 6)."""
     index = np.zeros(1, np.int64)
     passage = Passage(
-        elastic=history.T[:, :, None],
-        residual=partial(layer_stresses, MATERIAL),
-        lateral=IndependentLayers(history.shape[0] + 2),
+        elastic_stress=history.T[:, :, None],
+        compute_residual=partial(layer_stresses, MATERIAL),
+        layers=IndependentLayers(history.shape[0] + 2),
         cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
         material=ElasticPlastic(yield_stress=1e9, isotropic_hardening=hardening[0], kinematic_hardening=hardening[1]),
         tolerance=1e-5,
     )
-    state = State(np.zeros((6, 1)), np.zeros(1), True)
+    state = PlasticState(np.zeros((6, 1)), np.zeros(1), True)
     for _ in range(count):
         state = passage.solve(state)
     return state

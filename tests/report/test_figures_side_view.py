@@ -40,7 +40,7 @@ def test_side_view_has_equal_scales(drawn_figures: list[Figure]) -> None:
     assert view.height == 4e-3
     assert view.magnification == 1
     caption = side_view(case()).caption
-    assert "so is the profile" in caption
+    assert "the profile is to scale" in caption
     (figure,) = drawn_figures
     assert figure.axes[0].get_aspect() == 1
     assert {"L = 14 mm", "R = 4 mm", "body 16 mm", "end I: e = 1 mm", "end II: e = 1 mm"} <= {*texts(figure)}
@@ -52,7 +52,7 @@ def test_magnification_of_a_crown(crown_radius: float) -> None:
     view = side_geometry(crowned_case)
     factor = float(re.search(r"magnified (\S+) times", side_view(crowned_case).caption)[1])
     assert view.generatrix.max() == pytest.approx(factor * 7e-3**2 / (2 * crown_radius), rel=0.01)
-    assert not view.clipped
+    assert not view.is_clipped
 
 
 @pytest.mark.parametrize("body", [HalfSpace(material=STEEL), QuarterSpace(material=STEEL)])
@@ -81,4 +81,4 @@ def test_cone_in_the_caption() -> None:
 def test_infinite_drop_is_clipped() -> None:
     view = side_geometry(case(profile=profiles.Lundberg(2e-7)))
     assert np.isfinite(view.generatrix).all()
-    assert view.clipped
+    assert view.is_clipped

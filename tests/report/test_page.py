@@ -166,7 +166,7 @@ def test_corners_in_the_table_of_a_study(tmp_path: Path) -> None:
 def converged_rows(*errors: float) -> list[pages.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
-    return [pages._row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
+    return [pages._create_row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
@@ -177,8 +177,8 @@ def test_reason_of_several_cases() -> None:
 
 @pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
-    assert pages._verdict(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
-    assert pages._verdict(converged_rows(0.001, 0.001)) == ("yes", "2 real")
+    assert pages._summarise_answers(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert pages._summarise_answers(converged_rows(0.001, 0.001)) == ("yes", "2 real")
     runs = list(MALFORMED)
 
     def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
@@ -194,7 +194,7 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert "cylinder, fillet radius 0.1 mm" in page.text
     assert "at end" not in page.text
     scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
-    rows = [pages._row("case-1", "ok", "", xr.Dataset(numbers), []) for numbers in scalars]
+    rows = [pages._create_row("case-1", "ok", "", xr.Dataset(numbers), []) for numbers in scalars]
     names = [name for name in pages.HEADINGS if pages._has_number(rows, name)]
     assert names == ["end_pressure_first"]
 
@@ -301,12 +301,12 @@ def test_page_suffix_is_checked(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("without_encoding")
 def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
-    assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
+    assert "The figure's title contains the value of coefficient of friction and roller profile" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     selected_titles = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *selected_titles]) == 0
     selected_page = read_page(tmp_path / "one.html")
-    assert "the figure has the value" not in selected_page.text
+    assert "The figure's title contains" not in selected_page.text
     assert {f"case-{index}" for index in range(1, 13)} <= selected_page.anchors
     assert main(["report", str(folder), "--select", "speed=1"]) == 2
     assert "swept parameter: e_over_a, friction, profile" in capsys.readouterr().err

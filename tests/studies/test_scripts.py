@@ -62,7 +62,7 @@ def regime_errors(tmp_path_factory):
     )
     folder = tmp_path_factory.mktemp("regime_map")
     run_study(small_study, folder, workers=0)
-    return module.errors(module.select_quantities(open_study(folder)))
+    return module.compute_errors(module.select_quantities(open_study(folder)))
 
 
 def test_regime_map_compares_models_with_exact_ends(regime_errors):
@@ -81,7 +81,7 @@ def test_regime_map_compares_models_with_exact_ends(regime_errors):
         np.testing.assert_allclose(full_crown[name].sel(friction=0.3), full_crown[name].sel(friction=0.0), atol=1e-9)
     for profile in regime_errors["profile"].values:
         assert len(module.draw(regime_errors, profile).axes) == 16
-    assert module.table(regime_errors).count("\n") == 15
+    assert module.format_table(regime_errors).count("\n") == 15
 
 
 def test_regime_map_marks_singularities_of_models(regime_errors):
@@ -101,7 +101,7 @@ def test_regime_map_states_distance_of_small_errors():
         {"end_load_first": (("e_over_a", "gamma"), values)},
         {"e_over_a": [0.0, 1.0, 2.0, 4.0], "gamma": [3.0, 2.0, 1.0]},
     )
-    limit = module.limits(error)["end_load_first"]
+    limit = module.find_limits(error)["end_load_first"]
     np.testing.assert_array_equal(limit.sel(below=5.0), [2.0, np.nan, 0.0])
     np.testing.assert_array_equal(limit.sel(below=1.0), [2.0, np.nan, 0.0])
 
@@ -110,7 +110,7 @@ def test_regime_map_checks_accuracy():
     module = script("regime_map")
     study = Study.from_toml(STUDIES / "regime_map.toml")
     case_names = {case.name for case in study.plan()}
-    check = module.finer(study).plan()
+    check = module.refine_study(study).plan()
     assert len(check)
     assert not check.skipped
     assert {case.name for case in check} < case_names
@@ -120,14 +120,14 @@ def test_regime_map_checks_accuracy():
 def test_best_profile_needs_less_crown_between_free_ends():
     module = script("best_profile")
     task = module.Task(length=0.8e-3, pressures=(1.5e9,), offsets=(0.04e-3,), accuracy=0.1, points=(20, 61, 22))
-    designs = module.designs(task)
+    designs = module.compare_designs(task)
     crown_factors = designs["delta"].sel(design=["half-space", "free ends"]).values
     assert task.bounds[0] < crown_factors[1] < crown_factors[0] < task.bounds[1]
     assert float(designs["worst_pressure"].sel(design="free ends")) <= float(
         designs["worst_pressure"].sel(design="half-space")
     )
-    assert task.worst(float(crown_factors[1]), HalfSpace(material=task.material))[0] > 1.2
-    assert "| free ends |" in module.table(designs)
+    assert task.find_worst_pressure(float(crown_factors[1]), HalfSpace(material=task.material))[0] > 1.2
+    assert "| free ends |" in module.format_table(designs)
 
 
 def test_elastic_roller_is_softer_at_ends():
@@ -146,7 +146,7 @@ def test_elastic_roller_is_softer_at_ends():
         first, second = (float(raceway[name].sel(model="half-spaces")) for raceway in (wide_raceway, flush_raceway))
         # The largest stress is looked for from points that differ.
         assert first == pytest.approx(second, rel=1e-6 if name == "end_load" else 1e-4)
-    for table in (module.table, module.load_table):
+    for table in (module.format_table, module.load_table):
         assert "| Lundberg |" in table(result.isel(raceway=0))
         assert "±" in table(result.isel(raceway=0))
 
@@ -167,7 +167,7 @@ def test_real_roller_never_states_a_singular_pressure(law, text):
         "end_exponent": 0.5,
         "end_intensity": np.nan,
     } | law
-    assert script("real_roller").end_in_words(law_values) == text
+    assert script("real_roller").describe_end(law_values) == text
 
 
 @pytest.fixture(scope="module")
@@ -190,7 +190,7 @@ def test_quarter_space_is_softer_at_edge(near_an_edge):
         assert abs(float(at_equal_approach[name].sel(e_over_a=0.0)) - value) <= float(
             at_equal_approach[f"{name}_error"].sel(e_over_a=0.0)
         )
-    assert float(at_equal_approach["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
+    assert float(at_equal_approach["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_load(0.3, 8.0), abs=2e-3)
     stress_ratio = result["von_mises"].sel(e_over_a=0.0) / result["von_mises"].sel(e_over_a=np.inf)
     assert float(stress_ratio.sel(indenter="sphere", condition="load")) == pytest.approx(1.49, abs=0.01)
     assert float(stress_ratio.sel(indenter="cylinder", condition="load")) < 0.95
@@ -209,7 +209,7 @@ def test_quarter_space_passes_checks_on_coarse_cells(near_an_edge):
 def test_quarter_space_draws_and_tabulates_every_distance(near_an_edge):
     module, _, result = near_an_edge
     assert len(module.draw(result).axes) == 4
-    table = module.table(result, "sphere", "load")
+    table = module.format_table(result, "sphere", "load")
     assert table.splitlines()[0].startswith("| e / a | depth |")
     assert table.count("\n") == 4
     assert "nu = 0.3" in module.poisson_table(result)
@@ -235,7 +235,7 @@ def test_worn_profile_is_flat_at_design_load():
     assert float(maximum.sel(profile="best crown")) < float(maximum.sel(profile="worn by 10 µm"))
     assert float(maximum.sel(profile="worn by 10 µm")) < float(maximum.sel(profile="sharp"))
     assert len(module.draw(task, wear_result, result.expand_dims(offset=[0.0])).axes) == 3
-    assert "| best crown |" in module.table(result.expand_dims(offset=[0.0]))
+    assert "| best crown |" in module.format_table(result.expand_dims(offset=[0.0]))
 
 
 def test_rolling_script_draws_four_studies(tmp_path):
@@ -292,7 +292,7 @@ def test_shakedown_is_drawn_beside_the_line_contact(tmp_path):
     assert (limit.sel(friction=0.2) < limit.sel(friction=0.0)).all()
     assert float(module.stated_errors(result).max()) < 0.1
     assert len(module.draw(result, line).axes) == 3
-    assert module.table(result, line).count("\n") == 6
+    assert module.format_table(result, line).count("\n") == 6
 
 
 def test_residual_stress_leaves_the_free_end_free():
@@ -305,10 +305,10 @@ def test_residual_stress_leaves_the_free_end_free():
     assert along_axis[0] < 0.2 * min(along_axis[1:])
     # Rolling leaves compression in the yielded middle.
     assert float(mid_length["sigma_yy"].isel(pass_number=-1).min()) < -0.05
-    first, *_, last = module.flow(near_end).values
+    first, *_, last = module.compute_flow(near_end).values
     assert 0 < last < 0.02 * first
     assert len(module.draw(result).axes) == 5
-    assert "| in the middle |" in module.table(result)
+    assert "| in the middle |" in module.format_table(result)
 
 
 def test_thickest_film_needs_more_crown_than_the_lowest_pressure():
@@ -316,11 +316,11 @@ def test_thickest_film_needs_more_crown_than_the_lowest_pressure():
     task = module.Task(pressures=(1.2e9,), crowns=(0.25, 1.0), length=0.5e-3, accuracy=0.2)
     films = module.solve_all(task)
     assert dict(films.sizes) == {"model": 3, "max_pressure": 1, "crown": 2}
-    choice = module.choose(films).sel(model="flush", max_pressure=1.2e9)
+    choice = module.choose_crowns(films).sel(model="flush", max_pressure=1.2e9)
     assert float(choice["crown_film"]) > float(choice["crown_pressure"])
     assert float(choice["film_loss"]) > float(choice["film_loss_error"])
     assert float(choice["pressure_gain"]) > 0.01
     end_film_ratio = films["end_film_ratio"].sel(crown=1.0, max_pressure=1.2e9)
     assert float(end_film_ratio.sel(model="flush")) > 1.3 * float(end_film_ratio.sel(model="half-space"))
-    assert "| 1.2 | flush |" in module.table(films)
+    assert "| 1.2 | flush |" in module.format_table(films)
     assert len(module.draw(films).axes) == 2

@@ -13,7 +13,7 @@ from contactstudy.study.common_cells import (
     END_WIDTH,
     MIN_WIDTH,
     Resampling,
-    centre_cells_on,
+    centre_cells,
     common_columns,
     common_rows,
     end_cells,
@@ -132,7 +132,7 @@ def test_refined_columns_share_common_axis(tmp_path):
 @example(np.array([0.0, 1.0]), [0.23, 0.69])  # the first cell begins at the end but for rounding
 def test_stress_points_become_centres_of(source, points):
     points = np.unique(np.round(points, 3))
-    cells = centre_cells_on(source, points)
+    cells = centre_cells(source, points)
     assert np.diff(cells).min() > 0
     assert cells[[0, -1]].tolist() == source[[0, -1]].tolist()
     for point in points[(points > source[0]) & (points < source[-1])]:

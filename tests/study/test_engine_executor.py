@@ -93,10 +93,10 @@ def test_workers_of_another_version_are_left_out():
 
     messages = []
     workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, messages.append)
-    assert workers.usable(busy=False) == {"new"}
+    assert workers.find_usable(busy=False) == {"new"}
     assert len(messages) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
-        Workers(FakeClient({"old": "0.0.1"}), 0.0, messages.append).usable(busy=False)
+        Workers(FakeClient({"old": "0.0.1"}), 0.0, messages.append).find_usable(busy=False)
 
 
 @pytest.mark.parametrize("method", ["nthreads", "get_versions"])
@@ -106,4 +106,4 @@ def test_connection_error_names_scheduler(monkeypatch, method, error):
     client = FakeClient({"worker": "0.0.1"})
     monkeypatch.setattr(client, method, mock.Mock(side_effect=error))
     with pytest.raises(StudyFileError, match="scheduler has gone away"):
-        Workers(client, 1.0, print).usable(busy=True)
+        Workers(client, 1.0, print).find_usable(busy=True)

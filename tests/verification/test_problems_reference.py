@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from benchmarks.convergence import SETTINGS, Table
 from contactstudy.verification.problems import Reference
-from contactstudy.verification.suite import line
+from contactstudy.verification.suite import format_line
 
 FINITE = st.floats(-1e6, 1e6)
 
@@ -18,7 +18,7 @@ FINITE = st.floats(-1e6, 1e6)
 def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
     check = Reference("case", "source").compare("quantity", computed, expected, tolerance)
     assert check.passed == (abs(computed - expected) <= tolerance)
-    assert line(check).startswith("ok" if check.passed else "FAIL")
+    assert format_line(check).startswith("ok" if check.passed else "FAIL")
 
 
 @given(st.lists(FINITE, min_size=1, max_size=8), st.integers(0, 7))

@@ -43,9 +43,9 @@ def full_verification() -> Verification:
 
 def assert_check_passed(check: Check) -> None:
     """Fail with the line that the command prints."""
-    assert check.passed, suite.line(check)
+    assert check.passed, suite.format_line(check)
     assert check.source
-    assert abs(check.difference) <= TIGHTER.get(check.quantity, check.tolerance), suite.line(check)
+    assert abs(check.difference) <= TIGHTER.get(check.quantity, check.tolerance), suite.format_line(check)
 
 
 def parameters(*, slow: bool) -> list[object]:

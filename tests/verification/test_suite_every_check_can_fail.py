@@ -234,8 +234,8 @@ def coarse_quadratures(patch: Patch) -> None:
 
 
 def grid_without_effect(patch: Patch) -> None:
-    real = free_ends.pressure_of
-    patch.setattr(convergence, "pressure_of", lambda case, count: real(case, 8))
+    real = free_ends.create_pressure
+    patch.setattr(convergence, "create_pressure", lambda case, count: real(case, 8))
 
 
 def results_that_depend_on_the_grid(patch: Patch) -> None:

@@ -9,7 +9,7 @@ from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Settings, Shape
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
-from contactstudy.wear.wear_in import State, WearIntegrator
+from contactstudy.wear.wear_in import Wear, WearIntegrator
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def integrator():
     )
 
 
-def initial_state(integrator: WearIntegrator, step: float) -> State:
+def initial_state(integrator: WearIntegrator, step: float) -> Wear:
     start = integrator.initial_state(0.0, np.zeros(integrator.shape.grid.cells_x), 0.0)
     return start._replace(next_step=step)
 
