@@ -1,4 +1,4 @@
-"""Studies of tiny cases with the stand-in solver, in processes that can be killed, and the same without faults."""
+"""Studies of the stand-in solver in processes for the faults, and the values of an undisturbed study."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def study_folder() -> Iterator[Path]:
         yield folder
 
 
-def start(folder: Path, *more: str, largest_file: int | None = None) -> subprocess.Popen[str]:
+def start(folder: Path, *options: str, largest_file: int | None = None) -> subprocess.Popen[str]:
     """Start the study, in a new group of processes; files may have at most `largest_file` bytes."""
 
-    def limited() -> None:
+    def limit_file_size() -> None:
         assert largest_file is not None
         resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
 
-    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", *more]
+    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", *options]
     return subprocess.Popen(
         [sys.executable, "-m", "tests.study.fake_run", *command],
         cwd=ROOT,
@@ -55,12 +55,12 @@ def start(folder: Path, *more: str, largest_file: int | None = None) -> subproce
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        preexec_fn=limited if largest_file is not None else None,
+        preexec_fn=limit_file_size if largest_file is not None else None,
     )
 
 
 class Forked:
-    """Run of the study in a fork of this process, which needs no time to import: killed like any process."""
+    """Run of the study in a fork of this process, which has imported the package already."""
 
     returncode: int | None = None
 
@@ -69,9 +69,9 @@ class Forked:
         if self.pid:
             return
         os.setsid()
-        null = os.open(os.devnull, os.O_RDWR)
-        os.dup2(null, 1)
-        os.dup2(null, 2)
+        null_device = os.open(os.devnull, os.O_RDWR)
+        os.dup2(null_device, 1)
+        os.dup2(null_device, 2)
         worker.RUN = RunSettings(save_seconds=0.0)  # type: ignore[attr-defined] # an import of the module
         command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", "--workers", "0"]
         os._exit(main(command, solver=solve_fake))
@@ -94,13 +94,13 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def count_finished(folder: Path) -> dict[str, int]:
+def finished_cases(folder: Path) -> dict[str, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
     return Folder(folder / "out").results().cases["run"].to_dict()
 
 
-def unreadable(folder: Path) -> int:
-    """Number of batches that are damaged."""
+def count_damaged_batches(folder: Path) -> int:
+    """Number of damaged batches."""
     return sum(bool(find_damage(path)) for path in batches(folder))
 
 
@@ -115,7 +115,7 @@ def read_values(folder: Path) -> xr.Dataset:
 
 
 def list_leftovers(folder: Path) -> list[Path | str]:
-    """Parts of files and held locks, which a run must not leave behind."""
+    """Partial files and held locks, absent after a run."""
     out = folder / "out"
     return [*out.glob("**/*.part"), *Folder(out).holders]
 
@@ -129,10 +129,10 @@ def undisturbed_values() -> xr.Dataset:
 
 def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object]) -> None:
     """Wait for a condition, or for the successful end of the process."""
-    end = time.monotonic() + SECONDS
+    deadline = time.monotonic() + SECONDS
     while not condition():
         if process.poll() is not None:
             assert process.returncode == 0, process.communicate()
             return
-        assert time.monotonic() < end, "waited too long"
+        assert time.monotonic() < deadline, "waited too long"
         time.sleep(0.02)  # a shorter interval takes the core that the awaited process needs

@@ -52,18 +52,20 @@ def residual_stress(
     trace = lam * (e_xx + e_yy + e_zz)
     eigenstress = np.array([2 * e_xx + trace, 2 * e_yy + trace, 2 * e_zz + trace, 2 * e_xy, 2 * e_xz, 2 * e_yz])
 
-    def within(low: float, high: float) -> Callable[[Array], Array]:
+    def indicator(low: float, high: float) -> Callable[[Array], Array]:
         return lambda points: ((points > low) & (points < high)).astype(float)
 
-    in_x, in_z = within(x_low, x_high), within(z_low, z_high)
-    (v_x, s_x), (v_z, s_z) = ((line.load(g), _slope(line, g)) for line, g in ((across, in_x), (depth_line, in_z)))
-    right = np.stack(
+    in_x, in_z = indicator(x_low, x_high), indicator(z_low, z_high)
+    (value_x, slope_x), (value_z, slope_z) = (
+        (line.load(g), _slope(line, g)) for line, g in ((across, in_x), (depth_line, in_z))
+    )
+    generalised_force = np.stack(
         [
-            eigenstress[0] * np.outer(s_x, v_z) + eigenstress[4] * np.outer(v_x, s_z),
-            eigenstress[3] * np.outer(s_x, v_z) + eigenstress[5] * np.outer(v_x, s_z),
-            eigenstress[2] * np.outer(v_x, s_z) + eigenstress[4] * np.outer(s_x, v_z),
+            eigenstress[0] * np.outer(slope_x, value_z) + eigenstress[4] * np.outer(value_x, slope_z),
+            eigenstress[3] * np.outer(slope_x, value_z) + eigenstress[5] * np.outer(value_x, slope_z),
+            eigenstress[2] * np.outer(value_x, slope_z) + eigenstress[4] * np.outer(slope_x, value_z),
         ]
     )
-    displacement = body.displacements(right[None])
+    displacement = body.displacements(generalised_force[None])
     in_rectangle = in_x(x)[:, None] * in_z(z)
     return body.stresses(0.0, displacement, x, z)[0] - eigenstress[:, None, None] * in_rectangle

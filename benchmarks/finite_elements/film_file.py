@@ -1,4 +1,4 @@
-"""The file of films: every case on the cells of the package's coarsest level, and the finite elements' own error."""
+"""The file of films: every case on the cells of the package's coarsest level, with the error of the finite elements."""
 
 from __future__ import annotations
 

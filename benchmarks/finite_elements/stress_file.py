@@ -1,6 +1,6 @@
-"""The file of stresses under prescribed loads: every case, and how much each approximation changes it.
+"""The file of stresses under prescribed loads: every case with an estimate of its error.
 
-Every case is solved at the production resolution and with one thing at a time made worse: element order,
+Every case is solved at the production resolution and at resolutions with one coarser approximation each: element order,
 mesh, depth of the body, quadrature in k. The sum of the largest changes is stored as the error estimate of
 the case.
 """
@@ -41,40 +41,40 @@ VARIANTS = {  # name: (variant, reference)
 
 def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
     """Points of a case; with friction on both sides of y = 0."""
-    y = Y if case.friction == 0 else tuple(-v for v in Y[:0:-1]) + Y
+    y = Y if case.friction == 0 else tuple(-value for value in Y[:0:-1]) + Y
     return {"x": X[case.length], "y": y, "z": Z}
 
 
-def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
+def evaluate(case: LoadCase, harmonics_of_body: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
     """Stresses, and the displacement where defined, from the harmonics of a body."""
     positions = coordinates(case)
     normal = shapes.index((case.g, "z"))
     tangential = shapes.index((case.g, "y")) if case.friction else None
-    fields = stresses(harmonic, normal, tangential, case.friction, positions["y"])
+    fields = stresses(harmonics_of_body, normal, tangential, case.friction, positions["y"])
     units = {"units": "p0"}
-    data = xr.Dataset(
+    dataset = xr.Dataset(
         {n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in positions.items()}
     )
     for name in positions:
-        data[name].attrs["units"] = "a"
+        dataset[name].attrs["units"] = "a"
     if case.symmetric:
         reference = positions["x"].index(case.length / 2)
-        u = displacement(harmonic, case, normal, tangential, positions["y"], reference=reference)
+        displacement_z = displacement(harmonics_of_body, case, normal, tangential, positions["y"], reference=reference)
         attrs = {
             "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
             "units": "p0 a",
             "reference_x": case.length / 2,
             "reference_y": 0.0,
         }
-        data["displacement_z_young"] = (("x", "y"), u, attrs)
-    return data
+        dataset["displacement_z_young"] = (("x", "y"), displacement_z, attrs)
+    return dataset
 
 
-def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]:
+def max_changes(coarse: xr.Dataset, fine: xr.Dataset) -> tuple[float, float, float]:
     """Largest and median change of the stresses, largest change of the displacement."""
-    stress = np.array([np.abs(worse[n] - better[n]) for n in COMPONENTS])
+    stress = np.array([np.abs(coarse[n] - fine[n]) for n in COMPONENTS])
     name = "displacement_z_young"
-    difference = float(np.abs(worse[name] - better[name]).max()) if name in better else 0.0
+    difference = float(np.abs(coarse[name] - fine[name]).max()) if name in fine else 0.0
     return float(stress.max()), float(np.median(stress)), difference
 
 
@@ -99,11 +99,11 @@ def write(path: Path) -> None:
         results: dict[Resolution, dict[str, xr.Dataset]] = {}
         for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
             start = time.perf_counter()
-            harmonic = harmonics(length, poisson, shapes, X[length], Z, resolution=resolution)
-            results[resolution] = {n: evaluate(c, harmonic, list(shapes)) for n, c in cases.items()}
+            harmonics_of_body = harmonics(length, poisson, shapes, X[length], Z, resolution=resolution)
+            results[resolution] = {n: evaluate(c, harmonics_of_body, list(shapes)) for n, c in cases.items()}
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():
-            estimates = {v: changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
+            estimates = {v: max_changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
             dataset = results[PRODUCTION][name]
             dataset.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
             for variant, (largest, median, _) in estimates.items():

@@ -26,13 +26,13 @@ def test_section_maxima_without_parabola() -> None:
     assert (maxima[1:] <= 1.25 * np.array([3.0, 2.0])).all()
 
 
-def test_polynomials_about_a_sample() -> None:
+def test_interpolation_about_sample_is_exact_for_parabola() -> None:
     for x, centre in ((np.array([0.0, 1.0, 3.0, 4.0]), 1), (np.array([0.0, 1.0, 2.0, 3.0]), 2)):
         (points,), values = interpolate_about([x], [centre], (x**2)[None], 1)
         assert np.allclose(values[0], points**2)
 
 
-def test_width_of_a_crest() -> None:
+def test_variation_length_of_crest_equals_half_width() -> None:
     x = np.linspace(-1.0, 1.0, 201)
     crest = np.sqrt(np.maximum(1 - (x / 0.5) ** 2, 0))[:, None] * np.ones(20)
     assert min(variation_lengths(crest, x, 0.1, 100, rising=False)) == pytest.approx(0.5, abs=0.05)

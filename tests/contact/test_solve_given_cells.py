@@ -7,19 +7,23 @@ import pytest
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, solve, solve_contact
-from tests.contact.refinement.rollers import CASES, HALF_SPACE, RADIUS, SHORT, SHORT_ELASTIC, A, finite
+from tests.contact.refinement.rollers import CASES, HALF_SPACE, HALF_WIDTH, RADIUS, SHORT, SHORT_ELASTIC, finite_body
 
 
-@pytest.mark.parametrize("body", [HALF_SPACE, finite(SHORT)], ids=["half", "finite"])
+@pytest.mark.parametrize("body", [HALF_SPACE, finite_body(SHORT)], ids=["half", "finite"])
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
-    finite_body = isinstance(body, FiniteLengthSpace)
+    has_free_ends = isinstance(body, FiniteLengthSpace)
     retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
-    uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
+    uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * HALF_WIDTH, 2 * HALF_WIDTH), cells_x=64, cells_y=32)
     graded = Grid.from_edges(uniform.x_edges[retained], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):
-        is_inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
+        is_inside = (
+            (grid.x > 0) & (grid.x < SHORT)
+            if has_free_ends
+            else (grid.x > 0.5 * HALF_WIDTH) & (grid.x < SHORT - 0.5 * HALF_WIDTH)
+        )
         heights = np.where(is_inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
         gap = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
@@ -54,4 +58,4 @@ def test_cells_missing_roller_end_raise_error() -> None:
     case = CASES["elastic inside"]
     edges = SHORT_ELASTIC * np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0])
     with pytest.raises(InvalidInputError, match=r"without a border at x = "):
-        solve(case, Grid.from_edges(edges, (-4 * A, 4 * A), 16), stresses=False)
+        solve(case, Grid.from_edges(edges, (-4 * HALF_WIDTH, 4 * HALF_WIDTH), 16), stresses=False)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser import browser, chromium, open_served
+from tests.browser import find_chromium, open_browser, open_served_page
 from tests.explorer.conftest import free_port, needs_panel
 
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
@@ -17,7 +17,7 @@ pytest.importorskip("playwright", reason="playwright, which drives the browser, 
 pytestmark = [
     needs_panel,
     pytest.mark.browser,
-    pytest.mark.skipif(chromium() is None, reason="Chromium is not installed"),
+    pytest.mark.skipif(find_chromium() is None, reason="Chromium is not installed"),
 ]
 
 
@@ -36,10 +36,10 @@ def address(folder: Path) -> Iterator[str]:
 
 
 def test_page_follows_widgets(address: str) -> None:
-    with browser(1400, 900) as page:
+    with open_browser(1400, 900) as page:
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))
-        open_served(page, address)
+        open_served_page(page, address)
         cell = page.locator("tr:has-text('Hertz pressure p0') td.n").first
         assert cell.text_content() == "1 GPa"
         first_screenshot = page.screenshot()

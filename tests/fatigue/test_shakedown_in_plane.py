@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.finite_elements.shakedown import min_shear_yield_stress, points
+from benchmarks.finite_elements.shakedown import min_shear_yield_stress, point_positions
 from contactstudy import (
     ConvergenceWarning,
     FiniteLengthSpace,
@@ -99,7 +99,7 @@ def test_program_without_convergence_warns(fading_line_contact, monkeypatch) -> 
 def test_equilibrium_elements_give_a_similar_limit() -> None:
     """An independent program with linear stresses in triangles has fewer freedoms and a slightly lower limit."""
     length, x_edges, z_edges = 0.5, np.linspace(0, 0.5, 7), np.linspace(0, 2.4, 11)
-    x, z, y = points(x_edges, 0), points(z_edges, 1), np.linspace(-2.4, 2.4, 25)
+    x, z, y = point_positions(x_edges, 0), point_positions(z_edges, 1), np.linspace(-2.4, 2.4, 25)
     result = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, 0.0)
     distribution = 1 - 0.2 * np.abs(2 * x / length - 1)[:, None, None] ** 2
     stress = xr.Dataset(

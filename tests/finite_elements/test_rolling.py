@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.finite_elements.rolling import flexibility, roll
+from benchmarks.finite_elements.rolling import compute_flexibility, roll
 from benchmarks.finite_elements.superpose import PANELS, Resolution
 from contactstudy import FiniteLengthSpace, Material, Rolling
 from contactstudy.bodies import Counterbody
@@ -25,7 +25,7 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
     expected = roll(
-        flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
+        compute_flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
     )
     assert expected.change < 1e-3
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: 0.5 - tractions.EDGE_OFFSET)

@@ -76,7 +76,7 @@ def test_long_body_equals_half_space() -> None:
 def test_contact_without_lateral_contraction() -> None:
     """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
     case = fe.ContactCase(2.0, 0.0, poisson=0.0)
-    flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))
+    flexible = contact.compute_flexibility(case, COARSE(order=3, panels=BELOW_50))
     result = contact.solve(case, flexible, 1 / 12, 1.25)
     half_width, peak = ref.hertz_line(case.load / case.length, 0.5, 1.0)
     exact = peak * np.sqrt(np.clip(1 - (result.y / half_width) ** 2, 0, None))

@@ -20,7 +20,7 @@ from contactstudy.report import figures
 from contactstudy.report import page as pages
 from contactstudy.report.page import figures_of_folder
 from contactstudy.study import load_case, run_study
-from tests.browser import browser, chromium
+from tests.browser import find_chromium, open_browser
 from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
@@ -241,13 +241,13 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
+@pytest.mark.skipif(find_chromium() is None, reason="Chromium is not installed")
 def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("playwright")
     path = report.write(folder, tmp_path / "study.html")
     natural_widths = {}
     for width in (420, 1400):
-        with browser(width, 900) as page:
+        with open_browser(width, 900) as page:
             page.goto(path.as_uri())
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"

@@ -61,13 +61,13 @@ def test_prescribed_tilt_equals_prescribed_position() -> None:
     case = crowned_roller(load=1500.0, tilt=5e-4)
     grid = choose_grid(case, cells_x=4, cells_y=8)
     balanced_result = solve(case, grid, stresses=False)
-    balanced = solve(
+    position_result = solve(
         crowned_roller(load=1500.0, load_position=float(balanced_result.load_position)), grid, stresses=False
     )
-    assert float(balanced.tilt) == pytest.approx(5e-4, rel=2e-3)
-    assert float(balanced.pressure.max()) == pytest.approx(float(balanced_result.pressure.max()), rel=2e-3)
+    assert float(position_result.tilt) == pytest.approx(5e-4, rel=2e-3)
+    assert float(position_result.pressure.max()) == pytest.approx(float(balanced_result.pressure.max()), rel=2e-3)
     tilted_result = solve(crowned_roller(approach=float(balanced_result.approach), tilt=5e-4), grid, stresses=False)
-    # The approach of a tilted roller is its approach at mid-length; the approach of `tilted` refers to mid-length, too.
+    # The approach of a tilted roller refers to its mid-length in both results.
     assert float(tilted_result.normal_load) == pytest.approx(1500.0, rel=3e-3)
 
 
@@ -82,16 +82,18 @@ def test_reference_line_of_body_is_at_rest() -> None:
     case = crowned_roller(load=1500.0, tilt=5e-4)
     result = solve(case, stresses=False, accuracy=0.05)
     x = np.linspace(0.1e-3, 5.9e-3, 16)
-    load_x = float(result.load_position)
-    field = displacement_field(case.body, result.pressure, x=np.append(x, load_x), y=[0.0], z=[0.0, 9e-3]).u_z[:, 0]
+    load_position = float(result.load_position)
+    field = displacement_field(case.body, result.pressure, x=np.append(x, load_position), y=[0.0], z=[0.0, 9e-3]).u_z[
+        :, 0
+    ]
     slope = np.polynomial.polynomial.polyfit(x, field[:-1, 1], 1)[1]
     expected = float(field[-1, 0] - field[-1, 1])
-    top = result.displacement_z.sel(y=0.0, method="nearest").interp(x=load_x)
-    assert float(top) == pytest.approx(expected, rel=0.01)
+    top_displacement = result.displacement_z.sel(y=0.0, method="nearest").interp(x=load_position)
+    assert float(top_displacement) == pytest.approx(expected, rel=0.01)
     assert abs(slope) > 1e-6
 
 
-def test_half_space_depths_and_invalid_depths() -> None:
+def test_reference_depth_of_half_space_reduces_approach() -> None:
     roller = Roller(radius=RADIUS, length=4e-3, profile=CROWN)
     infinite_result, finite_result = (
         solve(

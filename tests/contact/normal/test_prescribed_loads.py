@@ -32,8 +32,8 @@ def test_resultant_acts_at_prescribed_position(offset: float):
     position = 0.5 * LENGTH + offset * HALF_WIDTH
     result = solve(case_with(load_position=position), stresses=False, accuracy=0.05)
     assert bool(result.converged)
-    line = result.pressure.sum("y") * result.x_width
-    assert abs(float((line * line.x).sum() / line.sum()) - position) < 1e-6 * LENGTH
+    line_load = result.pressure.sum("y") * result.x_width
+    assert abs(float((line_load * line_load.x).sum() / line_load.sum()) - position) < 1e-6 * LENGTH
     assert float(result.load_position) == pytest.approx(position, abs=1e-6 * LENGTH)
     if offset == 0:
         assert abs(float(result.tilt)) < 1e-9
@@ -45,10 +45,12 @@ def test_resultant_acts_at_prescribed_position(offset: float):
 def test_resulting_tilt_reproduces_position():
     case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
     grid = choose_grid(case, cells_x=8, cells_y=8)
-    free = solve(case, grid, stresses=False)
-    tilted = solve(case_with(tilt=float(free.tilt)), grid, stresses=False)
-    np.testing.assert_allclose(tilted.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
-    assert float(tilted.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
+    free_result = solve(case, grid, stresses=False)
+    tilted_result = solve(case_with(tilt=float(free_result.tilt)), grid, stresses=False)
+    np.testing.assert_allclose(
+        tilted_result.pressure, free_result.pressure, atol=5e-5 * float(free_result.pressure.max())
+    )
+    assert float(tilted_result.load_position) == pytest.approx(float(free_result.load_position), abs=1e-5 * LENGTH)
 
 
 def test_opposite_tilts_mirror_the_pressure():
@@ -93,7 +95,7 @@ def test_approach_of_hertz_point_contact():
 def test_wavy_surface_matches_westergaard(closure: float):
     """The pressure on the touching part of a wave follows from the mean pressure (Johnson, section 13.2).
 
-    The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
+    A body with mirrored ends is periodic along x; over one short wavelength the mean pressure is uniform along y.
     """
     modulus, wavelength = STEEL.plane_strain_modulus, 0.25 * HALF_WIDTH
     body = FiniteLengthSpace(length=wavelength, material=STEEL, model="mirror")
@@ -105,19 +107,19 @@ def test_wavy_surface_matches_westergaard(closure: float):
     roughness = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     result = solve(case, grid, roughness=roughness, stresses=False)
     assert bool(result.converged)
-    wave = result.pressure.sel(y=0.0, method="nearest")
-    mean = float(wave.mean())
-    ratio = mean * wavelength / (np.pi * modulus * amplitude)
+    wave_pressure = result.pressure.sel(y=0.0, method="nearest")
+    mean_pressure = float(wave_pressure.mean())
+    ratio = mean_pressure * wavelength / (np.pi * modulus * amplitude)
     if closure > 1:
-        assert bool((wave > 0).all())
-        expected = mean + (mean / ratio) * np.cos(2 * phase)
+        assert bool((wave_pressure > 0).all())
+        expected = mean_pressure + (mean_pressure / ratio) * np.cos(2 * phase)
     else:
-        edge = phase[wave.values > 0].max() + 0.5 * np.pi / grid.cells_x
+        edge = phase[wave_pressure.values > 0].max() + 0.5 * np.pi / grid.cells_x
         assert np.sin(edge) ** 2 == pytest.approx(ratio, abs=0.025)
         squared_profile = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
-        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(squared_profile)
-    assert np.abs(wave - expected).max() < 0.05 * mean / min(ratio, 1.0)
-    assert np.abs(wave - expected).mean() < 0.01 * mean
+        expected = 2 * mean_pressure * np.cos(phase) / ratio * np.sqrt(squared_profile)
+    assert np.abs(wave_pressure - expected).max() < 0.05 * mean_pressure / min(ratio, 1.0)
+    assert np.abs(wave_pressure - expected).mean() < 0.01 * mean_pressure
 
 
 def test_self_affine_surfaces_converge():
@@ -127,19 +129,19 @@ def test_self_affine_surfaces_converge():
         grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=1
     )
     result = solve(case, grid, roughness=roughness, stresses=False)
-    smooth = solve(case, grid, stresses=False)
+    smooth_result = solve(case, grid, stresses=False)
     assert bool(result.converged)
     assert int(result.iterations) < 150
     assert abs(float(result.load_error)) < 1e-12
     assert float(result.penetration_error) < 1e-5
-    assert float(result.pressure.max()) > 1.5 * float(smooth.pressure.max())
-    assert int((result.pressure > 0).sum()) < int((smooth.pressure > 0).sum())
+    assert float(result.pressure.max()) > 1.5 * float(smooth_result.pressure.max())
+    assert int((result.pressure > 0).sum()) < int((smooth_result.pressure > 0).sum())
 
 
 def test_roughness_on_other_cells_is_interpolated():
     case = case_with()
     grid = choose_grid(case)
-    wider = Grid(
+    wider_grid = Grid(
         x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
     )
 
@@ -148,7 +150,7 @@ def test_roughness_on_other_cells_is_interpolated():
         return xr.DataArray(heights, coords={"x": cells.x, "y": cells.y}, dims=("x", "y"))
 
     expected, interpolated = (
-        solve(case, grid, roughness=sloping_heights(cells), stresses=False) for cells in (grid, wider)
+        solve(case, grid, roughness=sloping_heights(cells), stresses=False) for cells in (grid, wider_grid)
     )
     np.testing.assert_allclose(interpolated.initial_gap, expected.initial_gap, atol=1e-18)
     tilted_result = solve(case_with(tilt=1e-3), grid, stresses=False)
@@ -221,17 +223,17 @@ def test_approach_and_tilt_state_reference():
 
 
 def test_load_near_end_acts_at_prescribed_position():
-    """The first guess has all its pressure on one side of the load: no factor on this pressure balances the load."""
+    """The initial guess lies on one side of the load: no multiple of it balances the load."""
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
-    crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
+    crowned_roller = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
     arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}
     for grid in (None, Grid(x_range=(0.0, 2e-3), y_range=(-4e-4, 4e-4), cells_x=320, cells_y=64)):
-        result = solve(Case(roller=crowned, **arguments), grid, stresses=False)
+        result = solve(Case(roller=crowned_roller, **arguments), grid, stresses=False)
         assert bool(result.converged)
         assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)
-    steep = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
+    steep_roller = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
     with pytest.raises(InvalidInputError, match=r"load_position = 5e-05: must be None, .* inclined"):
-        Case(roller=steep, **arguments)
+        Case(roller=steep_roller, **arguments)
 
 
 def balanced_tilt(scale: float) -> float:

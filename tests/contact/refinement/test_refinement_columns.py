@@ -1,4 +1,4 @@
-"""First columns: their widths, and their adaption to a shape where it is low enough to be loaded."""
+"""First columns: widths, and adaptation to the shape where its height allows a load."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 
 def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
-    """Shape of half-width 1 and depth 0.05, with lengths in a unit and from a position on."""
+    """Shape of half-width 1 and depth 0.05 in a unit of length, with its first end at `start`."""
     return AxialShape(
         start=start,
         stop=start + unit * LENGTH,
@@ -53,25 +53,25 @@ def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray,
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_overlooked_columns_leave_low_shape(name: str) -> None:
+def test_first_columns_follow_low_shape(name: str) -> None:
     height = SHAPES[name]
     edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
     widths, deviations = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
-    fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
+    fine_x = np.linspace(1e-6, LENGTH - 1e-6, 20001)
     positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
-    height_excess = height(positions).min(axis=1) - height(fine).min()
+    height_excess = height(positions).min(axis=1) - height(fine_x).min()
     depth = 0.05
-    followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
-    assert deviations[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
+    is_followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
+    assert deviations[is_followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only if it leaves its chord, or if a neighbour is narrow.
     assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):
         split_columns = ~np.isin(edges, baseline)
         assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # the crests are never loaded
-        crests = height_excess > 6 * depth
-        assert crests.any()
-        assert np.median(widths[crests]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
+        is_crest = height_excess > 6 * depth
+        assert is_crest.any()
+        assert np.median(widths[is_crest]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -96,17 +96,17 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
     half_widths = widths[: widths.size // 2]
     ratios = half_widths[1:] / half_widths[:-1]
     assert (ratios <= 2 * (1 + 1e-9)).all()
-    growing = half_widths[1:] < 0.7 * widths.max()
-    assert ratios[growing] == pytest.approx(2.0)
+    is_growing = half_widths[1:] < 0.7 * widths.max()
+    assert ratios[is_growing] == pytest.approx(2.0)
     assert widths == pytest.approx(widths[::-1])
 
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
 def test_straight_incline_adds_no_columns(slope: float) -> None:
     """The incline rises by more than the depth within a column, but never leaves its chord."""
-    baseline, incline = first_edges(axial_shape(np.zeros_like)), axial_shape(lambda x: slope * x)
+    baseline, inclined_shape = first_edges(axial_shape(np.zeros_like)), axial_shape(lambda x: slope * x)
     for nodes in (np.zeros(0), np.linspace(1.0, 19.0, 50)):
-        assert first_edges(replace(incline, nodes=nodes)) == pytest.approx(baseline)
+        assert first_edges(replace(inclined_shape, nodes=nodes)) == pytest.approx(baseline)
 
 
 def test_curved_shape_reaches_maximum_columns() -> None:
@@ -151,11 +151,14 @@ def test_close_corners_are_edges() -> None:
 
 @pytest.mark.parametrize("corner", [0.4, 7.43, 12.77])
 def test_corner_moves_neighbouring_edges_only(corner: float) -> None:
-    without = first_edges(axial_shape(np.zeros_like))
+    uncornered_edges = first_edges(axial_shape(np.zeros_like))
     edges = first_edges(replace(axial_shape(np.zeros_like), corners=(corner,)))
-    widest = np.diff(without).max()
-    distant_edges = without[np.abs(without - corner) > 0.25 * widest]
+    max_width = np.diff(uncornered_edges).max()
+    distant_edges = uncornered_edges[np.abs(uncornered_edges - corner) > 0.25 * max_width]
     assert corner in edges
     assert np.isin(distant_edges, edges).all()
     column = np.searchsorted(edges, corner)
-    assert min(np.diff(edges)[column - 1 : column + 1]) >= 0.2 * np.diff(without)[np.searchsorted(without, corner) - 1]
+    assert (
+        min(np.diff(edges)[column - 1 : column + 1])
+        >= 0.2 * np.diff(uncornered_edges)[np.searchsorted(uncornered_edges, corner) - 1]
+    )
