@@ -103,7 +103,7 @@ class Table:
             yield Reference(self.title, self.source).compare(quantity, shortfall, 0.0, 0.0)
 
 
-def point_contact() -> Table:
+def tabulate_point_contact() -> Table:
     """Hertz point contact over the grid."""
     body, errors = HalfSpace(material=unit_material()), []
     cells = (33, 65, 129, 257)
@@ -127,7 +127,7 @@ def point_contact() -> Table:
     )
 
 
-def stress_grid() -> Table:
+def tabulate_stress_grid() -> Table:
     """Stresses under a smooth load over the grid."""
     case = LOAD_CASES["full_sliding"]
     reference_stress = load_reference(STRESS_FILE, "full_sliding").sel(z=slice(0.0999, None))
@@ -154,7 +154,7 @@ def stress_grid() -> Table:
     )
 
 
-def contact_grid() -> Table:
+def tabulate_contact_grid() -> Table:
     """Contact of a cylinder with a body of equal length over the grid."""
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     counts = (4, 8, 16, 32)
@@ -252,7 +252,7 @@ def _quadrature_errors(resolution: Resolution) -> tuple[float, float]:
     return stress, displacement_error
 
 
-def quadrature_checks() -> Iterator[Check]:
+def check_quadratures() -> Iterator[Check]:
     """Errors of the quadratures with the default settings."""
     source = "every setting of the quadratures finer"
     for quantity, error in zip(("stresses / p0", "E* u_z / (p0 a)"), _quadrature_errors(Resolution()), strict=True):
@@ -261,7 +261,7 @@ def quadrature_checks() -> Iterator[Check]:
         )
 
 
-def quadrature_tables() -> Iterator[Table]:
+def tabulate_quadratures() -> Iterator[Table]:
     """Errors over every setting of the quadratures, with the other settings at their defaults."""
     for name, values in SETTINGS.items():
         errors = [_quadrature_errors(replace(Resolution(), **{name: value})) for value in values]
@@ -276,7 +276,7 @@ def quadrature_tables() -> Iterator[Table]:
         )
 
 
-def window() -> Table:
+def tabulate_window() -> Table:
     """Contact over the window in y: the pressure outside the contact is zero, so the window has no effect."""
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     widths = (1.3125, 1.75, 2.625, 3.5)
@@ -301,14 +301,14 @@ def window() -> Table:
 
 def tables() -> Iterator[Table]:
     """Every table."""
-    yield point_contact()
-    yield stress_grid()
-    yield contact_grid()
-    yield window()
-    yield from quadrature_tables()
+    yield tabulate_point_contact()
+    yield tabulate_stress_grid()
+    yield tabulate_contact_grid()
+    yield tabulate_window()
+    yield from tabulate_quadratures()
 
 
-def markdown(table: Table) -> str:
+def format_markdown(table: Table) -> str:
     """Markdown table of a convergence study."""
     cells = [f"**{value:.4g}**" if value == table.value_in_use else f"{value:.4g}" for value in table.values]
     rows = [row([table.setting, *cells]), "|---" * (len(cells) + 1) + "|"]
@@ -343,9 +343,9 @@ def main() -> int:
     parser.add_argument("--out", type=Path, help="folder of the figure")
     options = parser.parse_args()
     all_tables = list(tables())
-    checks = [*quadrature_checks(), *(check for table in all_tables for check in table.checks())]
+    checks = [*check_quadratures(), *(check for table in all_tables for check in table.checks())]
     for table in all_tables:
-        print(f"\n{markdown(table)}")
+        print(f"\n{format_markdown(table)}")
     print(f"\n{HEADING}")
     for check in checks:
         print(line(check))

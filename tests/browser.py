@@ -23,7 +23,7 @@ def find_chromium() -> str | None:
     return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
-def open_served_page(page: Any, address: str) -> None:
+def open_served(page: Any, address: str) -> None:
     """Open the page of a server, and wait for its figures."""
     deadline = time.monotonic() + SECONDS
     while time.monotonic() < deadline:
@@ -35,7 +35,7 @@ def open_served_page(page: Any, address: str) -> None:
 
 
 @contextmanager
-def open_browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any]:
+def browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any]:
     """Page of a new browser; requests to other hosts are refused, and listed in `page.refused`."""
     from playwright.sync_api import sync_playwright
 

@@ -1,4 +1,4 @@
-"""Cases of a short crowned steel roller on a body that is 20 half-widths long."""
+"""Cases of a short crowned steel roller on a body of 20 half-widths."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ import tomllib
 from pathlib import Path
 
 from contactstudy.study import Study, run_study
-from tests.browser import open_browser, open_served_page
+from tests.browser import browser, open_served
 
 ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "results"
@@ -26,7 +26,7 @@ def of_report(folder: Path) -> None:
     (block, *_) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
     with contextlib.chdir(folder):
         exec(compile(block, "report.md", "exec"), {})
-    with open_browser(1000, 1180) as page:
+    with browser(1000, 1180) as page:
         page.goto(f"file://{folder}/roller.html")
         page.screenshot(path=RESULTS / "report.png")
 
@@ -41,8 +41,8 @@ def of_explore(folder: Path) -> None:
         try:
             assert server.stdout is not None
             address = server.stdout.readline().split()[0]
-            with open_browser(1400, 900) as page:
-                open_served_page(page, address)
+            with browser(1400, 900) as page:
+                open_served(page, address)
                 page.locator("input[type=checkbox]").first.check()
                 page.wait_for_selector("th:has-text('second case')")
                 page.locator("select").nth(1).select_option(index=1)  # profile of the second case

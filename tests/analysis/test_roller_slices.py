@@ -105,7 +105,7 @@ DEFAULT_KINDS = ("crowned",)
 
 
 @pytest.mark.parametrize(
-    "name",
+    "case_name",
     [pytest.param(case_name, marks=() if case_name in DEFAULT_KINDS else pytest.mark.slow) for case_name in CASES],
 )
 def test_errors_cover_difference_from_finer_columns(case_name: str) -> None:

@@ -1,4 +1,4 @@
-"""Contacts on graded cells of a user: against uniform cells, and rejected cells."""
+"""Contacts on given graded cells: against uniform cells, and invalid cells."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from tests.contact.refinement.rollers import CASES, HALF_SPACE, HALF_WIDTH, RADI
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
     has_free_ends = isinstance(body, FiniteLengthSpace)
-    retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
+    kept_edges = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
     uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * HALF_WIDTH, 2 * HALF_WIDTH), cells_x=64, cells_y=32)
-    graded = Grid.from_edges(uniform.x_edges[retained], uniform.y_range, 32)
+    graded = Grid.from_edges(uniform.x_edges[kept_edges], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):
         is_inside = (
@@ -29,16 +29,16 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
     graded_contact, uniform_contact = contacts
     assert bool(graded_contact.converged)
-    middles = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
-    assert middles[0] == pytest.approx(middles[1], rel=5e-3)
+    mid_pressures = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
+    assert mid_pressures[0] == pytest.approx(mid_pressures[1], rel=5e-3)
     assert float(graded_contact.approach) == pytest.approx(float(uniform_contact.approach), rel=5e-3)
     total = float((graded_contact.pressure * graded.widths[:, None]).sum()) * graded.dy
     assert total == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
-    repeated_contact = solve_contact(body, gap_of(graded_contact, graded), approach=float(graded_contact.approach))
+    repeated_contact = solve_contact(body, initial_gap(graded_contact, graded), approach=float(graded_contact.approach))
     assert float(repeated_contact["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
 
 
-def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
+def initial_gap(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
     """Initial gap of a contact, from the cells with a finite gap."""
     heights = np.where(np.isfinite(contact.gap.values), grid.y**2 / (2 * RADIUS), np.inf)
     return contact.gap.copy(data=heights)

@@ -1,4 +1,4 @@
-"""The page in a browser: no requests to other hosts, figures, a slider, two widths of the window."""
+"""The page in a browser: slider, figures, two window widths, and no requests to other hosts."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser import find_chromium, open_browser, open_served_page
-from tests.explorer.conftest import free_port, needs_panel
+from tests.browser import browser, find_chromium, open_served
+from tests.explorer.conftest import find_free_port, needs_panel
 
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
 
@@ -24,7 +24,7 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def address(folder: Path) -> Iterator[str]:
     command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder), "--no-browser"]
-    command += ["--port", str(free_port())]
+    command += ["--port", str(find_free_port())]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
             assert server.stdout is not None
@@ -35,11 +35,11 @@ def address(folder: Path) -> Iterator[str]:
             server.terminate()
 
 
-def test_page_follows_widgets(address: str) -> None:
-    with open_browser(1400, 900) as page:
+def test_page_updates_after_slider_and_makes_no_external_requests(address: str) -> None:
+    with browser(1400, 900) as page:
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))
-        open_served_page(page, address)
+        open_served(page, address)
         cell = page.locator("tr:has-text('Hertz pressure p0') td.n").first
         assert cell.text_content() == "1 GPa"
         first_screenshot = page.screenshot()

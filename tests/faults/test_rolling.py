@@ -1,4 +1,4 @@
-"""A killed and resumed rolling study; the command compares 500 cases."""
+"""A killed and resumed rolling study."""
 
 from __future__ import annotations
 

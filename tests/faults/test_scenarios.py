@@ -1,4 +1,4 @@
-"""The page contains the table of faults, and a scenario counts failures."""
+"""Table of faults in the page, and counts of failed trials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Changes in forked processes: only the tests that reach a change detect it."""
+"""Mutation run in forked processes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from benchmarks.mutation.mutants import ROOT, all_mutants
 
 
 @pytest.mark.system
-def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
+def test_mutation_run_tests_each_change_by_reaching_tests(tmp_path: Path) -> None:
     command = [
         sys.executable,
         "-m",

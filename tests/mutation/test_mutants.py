@@ -1,4 +1,4 @@
-"""Mutants change one sign, factor or comparison of a computation, and nothing else."""
+"""Mutants: single changes of signs, factors and comparisons."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def function(x: float | None = -1.5) -> float:
 '''
 
 
-def test_mutants_of_source() -> None:
+def test_mutants_of_source_change_arithmetic_only() -> None:
     mutants = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
     assert sorted(mutants) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
@@ -40,14 +40,14 @@ def mutants() -> list[Mutant]:
 
 def test_every_mutant_is_another_program(mutants: list[Mutant]) -> None:
     assert len(mutants) > 1000
-    rooms = {"/".join(mutant.file.split("/")[1:-1]) for mutant in mutants}
-    assert rooms == {*PACKAGES, "contact/normal", "contact/refinement", "contact/rolling"}
+    packages = {"/".join(mutant.file.split("/")[1:-1]) for mutant in mutants}
+    assert packages == {*PACKAGES, "contact/normal", "contact/refinement", "contact/rolling"}
     dump = functools.cache(lambda text: ast.dump(ast.parse(text)))
     for mutant in mutants[::25]:
         assert dump(mutant.changed) != dump(mutant.source), mutant
 
 
-def test_changes_have_different_names(mutants: list[Mutant]) -> None:
+def test_keys_of_mutants_are_unique(mutants: list[Mutant]) -> None:
     assert len({mutant.key for mutant in mutants}) == len(mutants)
 
 

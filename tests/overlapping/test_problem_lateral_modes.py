@@ -1,4 +1,4 @@
-"""Wavenumbers along the rolling direction: panels, poles, and loads as few columns."""
+"""Wavenumbers along y: panels, poles, and loads as few columns."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y
     return total
 
 
-@given(seed=st.integers(0, 10**6), rank=st.sampled_from([1, 2, 40]), split=st.booleans())
-def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split: bool):
+@given(seed=st.integers(0, 10**6), rank=st.sampled_from([1, 2, 40]), is_split=st.booleans())
+def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, is_split: bool):
     rng = np.random.default_rng(seed)
     pressure = rng.random((GRID.cells_x, rank)) @ rng.random((rank, GRID.cells_y))
-    mirrored = pressure[::-1]
-    parity_loads = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
+    mirrored_pressure = pressure[::-1]
+    parity_loads = {1: pressure + mirrored_pressure, -1: pressure - mirrored_pressure} if is_split else {0: pressure}
     # The interpolation with 20 nodes is exact to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         fine_panel = replace(panel, nodes=panel.fine_nodes, interpolation=None)
@@ -80,20 +80,21 @@ def test_no_load_has_no_columns():
 
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])
 @pytest.mark.parametrize("moments", [cosine_moments, sine_moments])
-def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
-    """The difference of the moments between two ends of the range is the integral."""
+def test_moments_of_poles_equal_integral(moments: Callable[..., FloatArray], y: float):
+    """The difference between the moments from two wavenumbers equals the integral between them."""
     reference, positions = 10.0, np.array([y])
     wave = np.cos if moments is cosine_moments else np.sin
-    short_moments, long_moments = (
+    moments_from_low, moments_from_high = (
         moments(0.7, positions, reference, 3)[:, 0],
         moments(2.5, positions, reference, 3)[:, 0],
     )
     expected = [integrate.quad(lambda k, n=n: wave(k * y) * k**n, 0.7, 2.5)[0] for n in range(-3, 3)]
-    np.testing.assert_allclose(long_moments - short_moments, expected, atol=1e-12)
+    np.testing.assert_allclose(moments_from_high - moments_from_low, expected, atol=1e-12)
 
 
 def test_pole_integrals_vanish_at_reference():
-    """The integrals of the cosines' poles over all wavenumbers vanish at the reference, the first without curvature."""
+    """The integrals of the cosine poles over all wavenumbers vanish at the reference; the first has no curvature
+    there."""
     step, reference = 1e-3, 10.0
     y = reference + step * np.arange(-1.0, 2.0)
     total = cosine_moments(400.0, y, reference, 0)
@@ -106,14 +107,16 @@ def test_pole_integrals_vanish_at_reference():
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
 def test_sine_moments_integrate_cosine_moments(y: float):
-    """The derivative of ``sin(k y) / k**3`` along y is ``cos(k y) / k**2``, rigid motions included, and so on."""
+    """The derivative of ``sin(k y) / k**n`` along y is ``cos(k y) / k**(n - 1)``, rigid motions included."""
     step, reference = 1e-4, 3.0
     moments_ahead, moments_behind = (
-        sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1)
+        sine_moments(0.7, np.array([y + sign * step]), reference)[:, 0] for sign in (1, -1)
     )
-    cosine = cosine_moments(0.7, np.array([y]), reference)[:, 0]
+    cosine_values = cosine_moments(0.7, np.array([y]), reference)[:, 0]
     np.testing.assert_allclose(
-        (moments_ahead - moments_behind)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6
+        (moments_ahead - moments_behind)[:3] / (2 * step),
+        [cosine_values[1], cosine_values[2], cosine_values[3]],
+        atol=1e-6,
     )
 
 

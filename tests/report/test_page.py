@@ -20,7 +20,7 @@ from contactstudy.report import figures
 from contactstudy.report import page as pages
 from contactstudy.report.page import figures_of_folder
 from contactstudy.study import load_case, run_study
-from tests.browser import find_chromium, open_browser
+from tests.browser import browser, find_chromium
 from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
@@ -247,7 +247,7 @@ def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
     path = report.write(folder, tmp_path / "study.html")
     natural_widths = {}
     for width in (420, 1400):
-        with open_browser(width, 900) as page:
+        with browser(width, 900) as page:
             page.goto(path.as_uri())
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"

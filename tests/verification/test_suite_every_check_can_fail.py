@@ -321,7 +321,9 @@ def checks_that_pass(group: str, part: int, *, full: bool) -> set[tuple[str, str
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("table", [convergence.point_contact, convergence.contact_grid, convergence.window])
+@pytest.mark.parametrize(
+    "table", [convergence.tabulate_point_contact, convergence.tabulate_contact_grid, convergence.tabulate_window]
+)
 def test_convergence_with_noise_of_the_grid(table: Callable[[], convergence.Table]) -> None:
     with switched_off(results_that_depend_on_the_grid):
         assert all(failed_checks(table().checks()).values())
@@ -330,13 +332,13 @@ def test_convergence_with_noise_of_the_grid(table: Callable[[], convergence.Tabl
 @pytest.mark.slow
 def test_coarse_quadratures() -> None:
     with switched_off(coarse_quadratures):
-        assert all(failed_checks(convergence.quadrature_checks()).values())
+        assert all(failed_checks(convergence.check_quadratures()).values())
 
 
 @pytest.mark.slow
 def test_refinement_without_effect() -> None:
     with switched_off(grid_without_effect):
-        assert all(failed_checks(convergence.stress_grid().checks()).values())
+        assert all(failed_checks(convergence.tabulate_stress_grid().checks()).values())
 
 
 def test_every_part_has_faults() -> None:

@@ -48,7 +48,7 @@ def random_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(gap) & (rng.random(GRID.shape) < 0.3), rng.random(GRID.shape) ** 4, 0.0)
 
 
-@given(rng=generators, sharp=st.booleans())
+@given(rng=generators, has_sharp_end=st.booleans())
 def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Generator, has_sharp_end: bool):
     gap = rough_gap(rng, has_sharp_end) - 0.5
     computed = solve_complementarity(
@@ -67,7 +67,7 @@ def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Ge
     np.testing.assert_allclose(computed.pressure.ravel()[is_finite], expected, atol=1e-5 * expected.max())
 
 
-@given(rng=generators, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), BALANCED_LOAD]))
+@given(rng=generators, has_sharp_end=st.booleans(), resultants=st.sampled_from([Resultants(50.0), BALANCED_LOAD]))
 def test_prescribed_load_satisfies_contact_conditions(
     rng: np.random.Generator, has_sharp_end: bool, resultants: Resultants
 ):
@@ -170,7 +170,7 @@ def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
     check_conditions(BALANCED_LOAD, make_state(gap, BALANCED_LOAD, two_sided_pressure).pressure)
 
 
-@given(rng=generators, sharp=st.booleans(), has_far_guess=st.booleans())
+@given(rng=generators, has_sharp_end=st.booleans(), has_far_guess=st.booleans())
 def test_guess_is_scaled_to_approach(rng: np.random.Generator, has_sharp_end: bool, has_far_guess: bool):
     """The scaled guess has the least energy of all its multiples; a guess outside the overlap is replaced."""
     gap = rough_gap(rng, has_sharp_end) - 0.5
@@ -194,7 +194,9 @@ def potential_energy(gap: np.ndarray, pressure: np.ndarray) -> float:
 
 @settings(max_examples=10)
 @given(
-    rng=generators, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), BALANCED_LOAD, Resultants(None)])
+    rng=generators,
+    has_sharp_end=st.booleans(),
+    resultants=st.sampled_from([Resultants(50.0), BALANCED_LOAD, Resultants(None)]),
 )
 def test_area_change_reduces_energy_and_keeps_resultants(
     rng: np.random.Generator, has_sharp_end: bool, resultants: Resultants

@@ -25,7 +25,7 @@ def graded_edges(width: float) -> FloatArray:
     return width * np.concatenate([np.arange(9.0), 8 + 2 * np.arange(1, 9), 24 + 4 * np.arange(1, 17)])
 
 
-@given(intensity=st.floats(1e-3, 1e9), bend=st.floats(-3.0, 3.0))
+@given(intensity=st.floats(1e-3, 1e9), relative_slope=st.floats(-3.0, 3.0))
 def test_rigid_end_intensity_matches_power_law(intensity: float, relative_slope: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, intensity, relative_slope)[:, None] * np.array([0.4, 1.0, 0.4])
@@ -139,7 +139,7 @@ def test_power_growth_has_power_law(exponent: float) -> None:
     assert np.isnan(fitted_law.exponent)
 
 
-@given(share=st.floats(0.02, 0.2))
+@given(growth_rate=st.floats(0.02, 0.2))
 def test_logarithmic_growth_has_logarithm_law(growth_rate: float) -> None:
     growing_samples = make_samples(1 + growth_rate * np.log(1 / WIDTHS))
     law = law_of(growing_samples, np.nan)
@@ -149,7 +149,7 @@ def test_logarithmic_growth_has_logarithm_law(growth_rate: float) -> None:
     assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
-@given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
+@given(power=st.floats(0.6, 2.0), growth_rate=st.floats(0.0, 1.0))
 def test_converged_end_has_no_singular_law(power: float, growth_rate: float) -> None:
     assert law_of(make_samples(1 - growth_rate * WIDTHS**power), np.nan) is None
 

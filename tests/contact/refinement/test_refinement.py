@@ -78,7 +78,7 @@ def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
     return edges, np.array(drawn_marks)
 
 
-@given(marked=marked_edges())
+@given(marked_columns=marked_edges())
 def test_split_halves_marked_columns(marked_columns: tuple[FloatArray, BoolArray]) -> None:
     edges, is_marked = marked_columns
     finer = split_columns(edges, is_marked)
@@ -350,8 +350,8 @@ def test_end_step_marks_end_columns(side: int, unit: float) -> None:
         shape=request,
         edges=unit * edges,
     )
-    for theta, marked_columns in ((0.19, True), (0.21, False)):
-        assert refinement._select_columns_to_split(theta)[-side] == marked_columns
+    for theta, is_marked in ((0.19, True), (0.21, False)):
+        assert refinement._select_columns_to_split(theta)[-side] == is_marked
 
 
 def test_error_is_half_of_last_changes() -> None:
