@@ -1,4 +1,4 @@
-"""A study of four small cases that many tests share."""
+"""A shared study of four small cases."""
 
 from __future__ import annotations
 

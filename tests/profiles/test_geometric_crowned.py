@@ -60,7 +60,7 @@ def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None
     )
 
 
-def test_corner_radius_is_added(positions: np.ndarray) -> None:
+def test_drop_of_corner_radius_is_added(positions: np.ndarray) -> None:
     crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
     drop = (crown + corner).drop(positions, LENGTH)
     inside = np.abs(positions) <= HALF_LENGTH - 0.2e-3
@@ -86,7 +86,7 @@ def test_corner_radius_is_added(positions: np.ndarray) -> None:
         (lambda: PartialCrown(9e-3, 1.0, 1e-3, 0.1).drop(np.zeros(1), LENGTH), "dub_length = 0.001: must be at most"),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_crown_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 
@@ -96,8 +96,8 @@ def test_sphere_pressure_equals_hertz_point_contact(solve_profile, steel: Materi
     result = solve_profile(Sphere(RADIUS), length, load=load, cells=4, window=4.0)
     radius = np.cbrt(0.75 * load * RADIUS / steel.plane_strain_modulus)
     assert float(result["pressure"].max()) == pytest.approx(1.5 * load / (np.pi * radius**2), rel=5e-3)
-    cell = float(result["x"][1] - result["x"][0]) * float(result["y"][1] - result["y"][0])
-    assert float((result["pressure"] > 0).sum()) * cell == pytest.approx(np.pi * radius**2, rel=0.04)
+    cell_area = float(result["x"][1] - result["x"][0]) * float(result["y"][1] - result["y"][0])
+    assert float((result["pressure"] > 0).sum()) * cell_area == pytest.approx(np.pi * radius**2, rel=0.04)
 
 
 def test_sphere_equals_an_ellipsoid_of_equal_radius(positions: np.ndarray) -> None:
@@ -129,6 +129,6 @@ def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: 
         ),
     ],
 )
-def test_error_names_the_bad_radius(create, message: str) -> None:
+def test_invalid_sphere_or_ellipsoid_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()

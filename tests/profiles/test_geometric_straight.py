@@ -16,11 +16,11 @@ from tests.profiles.conftest import LENGTH, RADIUS, axial_results
 def test_fillet_lies_on_its_circle(fillet: float, x: float) -> None:
     """The circle's centre is one fillet radius from the end face and from the generatrix."""
     drop = float(Cylinder(fillet).drop(np.array([x]), LENGTH)[0])
-    begin = LENGTH / 2 - fillet
-    if x <= begin:
+    fillet_start = LENGTH / 2 - fillet
+    if x <= fillet_start:
         assert drop == 0.0
     else:
-        assert np.hypot(x - begin, fillet - drop) == pytest.approx(fillet, rel=1e-9)
+        assert np.hypot(x - fillet_start, fillet - drop) == pytest.approx(fillet, rel=1e-9)
 
 
 @given(
@@ -43,11 +43,11 @@ def test_taper_radius_equals_the_cone_curvature(angle: float, x: float) -> None:
     from scipy.optimize import brentq
 
     roller_radius, y = 20e-3, 1e-5
-    cos, sin = np.cos(angle), np.sin(angle)
+    cosine, sine = np.cos(angle), np.sin(angle)
 
     def distance_outside(height: float) -> float:
         """Distance from the axis minus the cone's radius, at `height` below the tangent plane."""
-        along_axis, below_axis = x * cos + height * sin, roller_radius + x * sin - height * cos
+        along_axis, below_axis = x * cosine + height * sine, roller_radius + x * sine - height * cosine
         return float(np.hypot(y, below_axis) - (roller_radius + along_axis * np.tan(angle)))
 
     exact = brentq(distance_outside, -1e-9, 1e-6, xtol=1e-20)
@@ -88,6 +88,6 @@ def test_mirrored_taper_has_the_mirrored_pressure(solve_profile) -> None:
         ),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()

@@ -83,9 +83,11 @@ def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> Non
 @given(st.floats(1e-9, 1e-5), st.floats(1e-7, 1e-3))
 def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_width: float) -> None:
     x = HALF_LENGTH * np.linspace(-1, 1, 41)
-    johns = JohnsGohar(amplitude, half_width)
-    fujiwara = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
-    np.testing.assert_allclose(fujiwara.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
+    johns_gohar = JohnsGohar(amplitude, half_width)
+    fujiwara_kawase = FujiwaraKawase(amplitude, edge_drop=johns_gohar.edge_drop(LENGTH))
+    np.testing.assert_allclose(
+        fujiwara_kawase.drop(x, LENGTH), johns_gohar.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude
+    )
 
 
 @given(st.floats(1e-9, 1e-5))
@@ -93,21 +95,21 @@ def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
     x = HALF_LENGTH * np.linspace(-0.999, 0.999, 41)
     lundberg = Lundberg(amplitude).drop(x, LENGTH)
     np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
-    deep = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
-    np.testing.assert_allclose(deep.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
+    deep_profile = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
+    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
 
 
-def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
-    """The formula has the crowned length a' of one side, and y from the roller's end, as in the paper."""
+def test_fujiwara_and_kawase_equals_paper(positions: np.ndarray) -> None:
+    """The formula of the paper: crowned length a' of one side, distance y from the roller's end."""
     amplitude, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
     profile = FujiwaraKawase(amplitude, end_drop, k1, k2)
     crown_length = k2 * HALF_LENGTH
-    from_end = HALF_LENGTH - np.abs(positions)
-    scaled_distance = np.where(from_end < crown_length, 1 - from_end / crown_length, 0.0)
+    end_distance = HALF_LENGTH - np.abs(positions)
+    scaled_distance = np.where(end_distance < crown_length, 1 - end_distance / crown_length, 0.0)
     expected = k1 * amplitude * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * amplitude))) * scaled_distance**2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-7, atol=1e-20)
     assert profile.drop(positions, LENGTH)[[0, -1]] == pytest.approx(end_drop)
-    assert (profile.drop(positions, LENGTH)[from_end > crown_length] == 0).all()
+    assert (profile.drop(positions, LENGTH)[end_distance > crown_length] == 0).all()
 
 
 def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
@@ -132,7 +134,7 @@ def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
         (lambda: FujiwaraKawase(1e-6, 1e-6, k2=1.5), "k2 = 1.5: must be at most 1"),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 
@@ -156,14 +158,14 @@ def test_design_load_gives_the_hertz_pressure(profile_class, parameters: dict[st
 DIAMETER = 10e-3
 
 
-def test_iso_formula_of_a_short_roller() -> None:
+def test_short_iso_profile_equals_standard() -> None:
     """The formula of the standard in millimetres, with the decadic logarithm."""
     length, x = 12.0, np.linspace(-5.9, 5.9, 31)
     expected = 0.00035 * 10.0 * np.log10(1 / (1 - (2 * x / length) ** 2)) * np.log(10)
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 12e-3), expected, rtol=1e-12)
 
 
-def test_iso_formula_of_a_long_roller() -> None:
+def test_long_iso_profile_equals_standard() -> None:
     length = 40.0
     x = np.linspace(-19.9, 19.9, 81)
     inside = np.abs(x) - (length - 25.0) / 2
@@ -190,9 +192,9 @@ def test_iso_branches_differ_by_their_amplitudes(position: float) -> None:
 def test_short_iso_profile_is_lundbergs_for_3000_megapascals() -> None:
     """The formula contains two bodies of steel with the 207 GPa and 0.3 of the standard."""
     modulus = 207e9 / (2 * (1 - 0.3**2))
-    design = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
+    lundberg_profile = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
     x = np.array([3e-3, 4.5e-3])
-    np.testing.assert_allclose(IsoCylindrical(DIAMETER).drop(x, 10e-3), design.drop(x, 10e-3), rtol=1e-2)
+    np.testing.assert_allclose(IsoCylindrical(DIAMETER).drop(x, 10e-3), lundberg_profile.drop(x, 10e-3), rtol=1e-2)
 
 
 def test_iso_drops_are_infinite_at_the_ends() -> None:
@@ -203,6 +205,6 @@ def test_iso_drops_are_infinite_at_the_ends() -> None:
 
 @pytest.mark.parametrize("profile_class", [IsoCylindrical, IsoTapered])
 @pytest.mark.parametrize("diameter", [0.0, -1e-3, np.nan, "thick", True])
-def test_error_names_the_bad_diameter(profile_class, diameter) -> None:
+def test_invalid_diameter_raises(profile_class, diameter) -> None:
     with pytest.raises(InvalidInputError, match="diameter = "):
         profile_class(diameter)

@@ -21,14 +21,14 @@ CROWN = FullCrown(1.25)
 DROP = CROWN.drop(X - LENGTH / 2, LENGTH)
 
 
-def csv_file(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
+def write_csv(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
     path = folder / "trace.csv"
     lines = [f"{1e3 * a:.9g}, {1e6 * b:.9g}" for a, b in zip(x, drop, strict=True)]
     path.write_text("\n".join(["# stylus 2 um", header, *lines]))
     return path
 
 
-def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str = "drop", sign: float = 1.0) -> Path:
+def write_netcdf(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str = "drop", sign: float = 1.0) -> Path:
     path = folder / "trace.nc"
     dataset = xr.Dataset({name: ("x", 1e6 * sign * DROP, {"units": units[1]})}, {"x": ("x", 1e3 * X, {"units": "mm"})})
     dataset["x"].attrs["units"] = units[0]
@@ -37,7 +37,7 @@ def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str =
 
 
 def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> None:
-    for path in (csv_file(tmp_path), netcdf_file(tmp_path), netcdf_file(tmp_path, name="height", sign=-1.0)):
+    for path in (write_csv(tmp_path), write_netcdf(tmp_path), write_netcdf(tmp_path, name="height", sign=-1.0)):
         profile = Measured.from_file(path)
         np.testing.assert_allclose(
             profile.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13
@@ -56,7 +56,7 @@ def test_csv_separators_and_brackets(tmp_path: Path, separator: str, brackets: s
 
 
 def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, positions: np.ndarray) -> None:
-    path = csv_file(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
+    path = write_csv(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
     uncorrected = Measured.from_file(path)
     np.testing.assert_allclose(uncorrected.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
     straight = Measured.from_file(path, remove_tilt=True, remove_offset=True)
@@ -81,9 +81,9 @@ def test_interpolation_overshoots_only_at_crests(drops: list[float], position: f
 def test_interpolation_of_a_parabola_is_exact() -> None:
     x = np.linspace(0.0, LENGTH, 24)
     crown = (x - 0.47 * LENGTH) ** 2
-    fine = np.linspace(-LENGTH / 2, LENGTH / 2, 999)
-    drop = Measured(x, crown).drop(fine, LENGTH)
-    expected = (fine + 0.03 * LENGTH) ** 2
+    fine_x = np.linspace(-LENGTH / 2, LENGTH / 2, 999)
+    drop = Measured(x, crown).drop(fine_x, LENGTH)
+    expected = (fine_x + 0.03 * LENGTH) ** 2
     np.testing.assert_allclose(drop - drop.min(), expected - expected.min(), atol=1e-16)
 
 
@@ -94,11 +94,11 @@ def test_interpolation_contains_the_points(positions: np.ndarray) -> None:
 
 
 def test_crown_and_measured_waviness_add_up(positions: np.ndarray) -> None:
-    wave = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
-    total = Lundberg(2e-7) + wave
+    waviness = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
+    combined = Lundberg(2e-7) + waviness
     inner = positions[1:-1]
     expected = Lundberg(2e-7).drop(inner, LENGTH) + 0.1e-6 * (1 - np.cos(2 * np.pi * (inner + 5e-3) / 2e-3))
-    np.testing.assert_allclose(total.drop(inner, LENGTH), expected, atol=1.5e-10)
+    np.testing.assert_allclose(combined.drop(inner, LENGTH), expected, atol=1.5e-10)
 
 
 @pytest.mark.parametrize(
@@ -138,8 +138,8 @@ def test_error_contains_the_positions_of_outliers(index: int, spike: float, nois
 
 @pytest.mark.parametrize("difference", [-0.2e-3, 0.2e-3])
 def test_measured_length_must_equal_the_roller(difference: float) -> None:
-    word = "longer" if difference < 0 else "shorter"
-    with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{word}"):
+    comparison = "longer" if difference < 0 else "shorter"
+    with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{comparison}"):
         Roller(radius=RADIUS, length=LENGTH + difference, profile=Measured(X, DROP))
 
 
@@ -168,12 +168,12 @@ def replace_entry(values: np.ndarray, index: int, value: float) -> np.ndarray:
         (X[:4], DROP[:4], "positions = '4 positions': must be at least 5"),
     ],
 )
-def test_error_names_the_bad_points(x, drop, message: str) -> None:
+def test_invalid_points_raise(x, drop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Measured(x, drop)
 
 
-def test_error_names_the_bad_spike() -> None:
+def test_invalid_spike_limit_raises() -> None:
     with pytest.raises(InvalidInputError, match="largest_spike = 0"):
         Measured(X, DROP, largest_spike=0)
 
@@ -196,18 +196,18 @@ def test_error_names_the_bad_spike() -> None:
         ("x [mm], drop [um]\n0, 0\n,0\n2, 0\n3, 0\n4, 0\n5, 0", "positions = 'nan at position 1'"),
     ],
 )
-def test_error_names_the_bad_csv_file(tmp_path: Path, text: str, message: str) -> None:
+def test_invalid_csv_file_raises(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "trace.csv"
     path.write_text(text)
     with pytest.raises(InvalidInputError, match=message):
         Measured.from_file(path)
 
 
-def test_error_names_the_bad_netcdf_file(tmp_path: Path) -> None:
+def test_invalid_netcdf_file_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="unit of x = 'deg'"):
-        Measured.from_file(netcdf_file(tmp_path, units=("deg", "um")))
+        Measured.from_file(write_netcdf(tmp_path, units=("deg", "um")))
     with pytest.raises(InvalidInputError, match="a file with drop or height along x"):
-        Measured.from_file(netcdf_file(tmp_path, name="depth"))
+        Measured.from_file(write_netcdf(tmp_path, name="depth"))
     broken = tmp_path / "broken.nc"
     broken.write_text("no netCDF")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read"):
@@ -215,7 +215,7 @@ def test_error_names_the_bad_netcdf_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "missing.nc"])
-def test_error_names_the_missing_file(tmp_path: Path, name: str) -> None:
+def test_missing_file_raises(tmp_path: Path, name: str) -> None:
     with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
         Measured.from_file(tmp_path / name)
 
@@ -236,7 +236,7 @@ def test_filter_preserves_the_crown_and_reduces_noise() -> None:
 
 
 def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
-    path = csv_file(tmp_path, drop=DROP + NOISE + 2e-6)
+    path = write_csv(tmp_path, drop=DROP + NOISE + 2e-6)
     from_file = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
     assert from_file.cutoff == 0.8e-3
     np.testing.assert_allclose(
@@ -248,7 +248,7 @@ def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cutoff", [0.0, -1e-3, 0.2e-3, 11e-3, 0.8, "0.8 mm", np.nan])
-def test_error_names_the_bad_cutoff(cutoff: object) -> None:
+def test_invalid_cutoff_raises(cutoff: object) -> None:
     with pytest.raises(InvalidInputError, match="cutoff = "):
         Measured(X, DROP, cutoff=cutoff)
 
@@ -260,8 +260,8 @@ def test_outlier_check_precedes_the_filter() -> None:
         Measured(X, drop, cutoff=0.8e-3)
 
 
-def test_line_and_map_of_an_instrument(tmp_path: Path, positions: np.ndarray) -> None:
-    """Heights of the crown; end II is lower, which distinguishes directions."""
+def test_profile_from_line_and_map_of_instrument(tmp_path: Path, positions: np.ndarray) -> None:
+    """The heights are lower at end II, so that both directions differ."""
     line = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
     y = np.linspace(0.0, 0.3e-3, 16)
     heights = line[:, None] - (y - 0.13e-3) ** 2 / (2 * RADIUS)
@@ -276,7 +276,7 @@ def test_line_and_map_of_an_instrument(tmp_path: Path, positions: np.ndarray) ->
 
 
 def test_rotation_exchanges_the_ends_of_columns(tmp_path: Path) -> None:
-    path = csv_file(tmp_path, drop=DROP + 2e-4 * X)
+    path = write_csv(tmp_path, drop=DROP + 2e-4 * X)
     rotated = Measured.from_file(path, turn=180)
     np.testing.assert_allclose(rotated.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
     with pytest.raises(InvalidInputError, match="turn = 90: must be one of 0, 180"):

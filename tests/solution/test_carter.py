@@ -64,18 +64,18 @@ def test_stress_maximum_in_narrow_slip_strip() -> None:
     motion = cs.Rolling(**{name: value * half_width / RADIUS for name, value in creepages.items()})
     x_range = (0.1e-3 - 0.81 * half_width, 0.1e-3 + 0.81 * half_width)
     y_range = (-1.66 * half_width, 1.66 * half_width)
-    coarse, fine = (
-        largest_stress(
+    coarse_maximum, fine_maximum = (
+        find_stress_maximum_on_cells(
             replace(case, motion=motion),
             cs.Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y),
         )
         for cells_x, cells_y in ((8, 32), (32, 96))
     )
-    assert coarse.position[2] == 0.0
-    assert abs(coarse.value - fine.value) < coarse.error < 0.1 * fine.value
+    assert coarse_maximum.position[2] == 0.0
+    assert abs(coarse_maximum.value - fine_maximum.value) < coarse_maximum.error < 0.1 * fine_maximum.value
 
 
-def largest_stress(case: cs.Case, grid: cs.Grid) -> StressMaximum:
+def find_stress_maximum_on_cells(case: cs.Case, grid: cs.Grid) -> StressMaximum:
     """Largest von Mises stress on given cells with its error, which results on given cells do not have."""
     solution = contact_on_cells(case, grid, None, 1e-6)
     loads, pressure = solution.tractions.loads, solution.contact.pressure

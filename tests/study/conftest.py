@@ -1,4 +1,4 @@
-"""Small studies for all tests of the study layer."""
+"""Small studies of the tests of the study layer."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def tickets_of(folder: Path) -> Path:
     return folder.with_name(f"{folder.name}-tickets")
 
 
-def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Sequence[str] = ()) -> subprocess.Popen[str]:
+def start_run(
+    study: Path, folder: Path, *options: str, tickets: int, within: Sequence[str] = ()
+) -> subprocess.Popen[str]:
     """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others.
 
     `within` is a command that runs another one, such as one in a container.
@@ -34,7 +36,7 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
     give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
-        [*within, *command, *more],
+        [*within, *command, *options],
         cwd=ROOT,
         start_new_session=True,
         text=True,

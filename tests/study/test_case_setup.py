@@ -10,14 +10,14 @@ from contactstudy.study.parameters import add_default_accuracy, identity_value
 from tests.small_study import BASE
 
 
-def test_roller_length_fixes_the_roller():
+def test_roller_length_determines_roller():
     case = build_setup(BASE | {"e_over_a": 2}).case
     assert case.roller.length == pytest.approx(0.5e-3)
     assert case.body.length == pytest.approx(0.5e-3 + 4 * case.hertz_half_width)
     assert case.roller_start == pytest.approx(2 * case.hertz_half_width)
 
 
-def test_gamma_fixes_the_body():
+def test_gamma_determines_body_length():
     values = {key: value for key, value in BASE.items() if key != "roller_length"}
     case = build_setup(values | {"gamma": 0.2, "e_over_a": 2}).case
     assert case.body.length == pytest.approx(1e-3)
@@ -34,7 +34,7 @@ def test_half_space_keeps_roller_and_coordinates():
 
 @pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])
 @pytest.mark.parametrize("parameters", [{"gamma": 0.5}, {"roller_length": 2e-3}])
-def test_load_and_e_over_a_together(parameters, e_over_a):
+def test_end_distance_follows_from_load_and_e_over_a(parameters, e_over_a):
     values = {key: BASE[key] for key in ("young", "poisson", "radius")} | parameters
     case = build_setup(values | {"load": 300.0, "e_over_a": e_over_a}).case
     assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
