@@ -43,7 +43,7 @@ def _survives(undisturbed: xr.Dataset, host_name: str, *, killed: bool) -> bool:
     """Whether each case is solved once, to the last bit of an undisturbed run."""
     with studies.study_folder() as folder:
         outputs, study = folder / "out", folder / "study.toml"
-        first_run = start_run(study, outputs, "--workers", "0", tickets=2, within=_system(host_name))
+        first_run = start_run(study, outputs, "--workers", "0", tickets=2, prefix=_system(host_name))
         studies.wait(first_run, lambda: len(studies.finished_cases(folder)) == 2)
         is_right = _is_refused(folder, host_name)
         if killed:

@@ -268,9 +268,9 @@ def test_profile_from_line_and_map_of_instrument(tmp_path: Path, positions: np.n
     x3pio.Profile.from_array(line, x_scale=X[1]).save(tmp_path / "line.x3p")
     x3pio.write(tmp_path / "map.x3p", heights.T, x_scale=X[1], y_scale=y[1])
     x3pio.write(tmp_path / "other.x3p", heights, x_scale=y[1], y_scale=X[1])
-    for name, turn, side in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
+    for name, turn, x_sign in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
         profile = Measured.from_file(tmp_path / f"{name}.x3p", remove_offset=True, turn=turn)
-        expected = CROWN.drop(positions, LENGTH) + 4e-4 * np.maximum(side * positions, 0.0)
+        expected = CROWN.drop(positions, LENGTH) + 4e-4 * np.maximum(x_sign * positions, 0.0)
         np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-6, atol=1e-12)
     assert np.ptp(Measured.from_file(tmp_path / "other.x3p", remove_offset=True).positions) == pytest.approx(0.3e-3)
 

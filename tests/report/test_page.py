@@ -111,8 +111,10 @@ def test_page_of_singular_peak_has_marks(case_result: xr.Dataset) -> None:
 
 @pytest.mark.usefixtures("skip_encoding")
 def test_page_of_singular_corner_has_position(case_result: xr.Dataset) -> None:
-    corner = case_result.assign(peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6)
-    page = Page(report.html(corner))
+    corner_result = case_result.assign(
+        peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6
+    )
+    page = Page(report.html(corner_result))
     assert page.text.count("singular: unbounded towards the corner at x = 5 mm") == 3
     assert "distance d0 in the law of the pressure at the corner" in page.text
 
@@ -150,15 +152,15 @@ def test_page_of_study_contains_all_cases(page: Page) -> None:
 
 @pytest.mark.usefixtures("skip_encoding")
 def test_study_table_contains_corners(tmp_path: Path) -> None:
-    corner = {"corner_x": 0.1e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8, "corner_distance": 54e-6}
+    corner_values = {"corner_x": 0.1e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8, "corner_distance": 54e-6}
 
     def solve_corner(case: Case, *arguments, **keywords) -> xr.Dataset:
-        values = corner | {"corner_distance_error": 1.3e-6}
+        values = corner_values | {"corner_distance_error": 1.3e-6}
         return solve_fake(case, *arguments, **keywords).assign(values if case.friction else {})
 
     run_study(small_study(), tmp_path, workers=0, solver=solve_corner, progress=False)
     text = read_page(report.write(tmp_path)).text
-    for heading in (pages.HEADINGS[name] for name in corner):
+    for heading in (pages.HEADINGS[name] for name in corner_values):
         assert heading in text
     assert text.count("0.1 mm 0.02 0.73 GPa 54.0 ± 1.3 µm") == 2
 

@@ -125,8 +125,8 @@ def test_grid_beside_roller_raises_error() -> None:
     ],
 )
 def test_short_contact_has_sufficient_window(body) -> None:
-    strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
-    case = Case(body=body, roller=strongly_crowned, load=400.0)
+    crowned_roller = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
+    case = Case(body=body, roller=crowned_roller, load=400.0)
     with pytest.raises(WindowError, match="choose_grid"):
         solve(case, choose_grid(case), stresses=False)
     computed = solve(case, stresses=False)

@@ -26,17 +26,17 @@ def tickets_of(folder: Path) -> Path:
 
 
 def start_run(
-    study: Path, folder: Path, *options: str, tickets: int, within: Sequence[str] = ()
+    study: Path, folder: Path, *options: str, tickets: int, prefix: Sequence[str] = ()
 ) -> subprocess.Popen[str]:
-    """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others.
+    """Start the command in a new process group; the stand-in solver solves `tickets` cases and then waits.
 
-    `within` is a command that runs another one, such as one in a container.
+    `prefix` is a prefix of the command, for example to run it in a container.
     """
     initial_tickets = tickets_of(folder)
     give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
-        [*within, *command, *options],
+        [*prefix, *command, *options],
         cwd=ROOT,
         start_new_session=True,
         text=True,
@@ -51,7 +51,7 @@ def count_finished(folder: Path) -> int:
     return len(Folder(folder).results().cases)
 
 
-def intact(folder: Path) -> bool:
+def has_intact_batches(folder: Path) -> bool:
     """Whether every batch of a folder has its checksum."""
     return not any(find_damage(path) for path in batch_paths(folder / "batches"))
 
@@ -68,8 +68,8 @@ def study_file(tmp_path: Path) -> Path:
     return path
 
 
-def planned_case(index, parameters=None):
-    """Case of a plan that is not set up."""
+def make_planned_case(index, parameters=None):
+    """A planned case outside a plan."""
     return PlannedCase(
         index=index,
         id=f"{index:064x}",

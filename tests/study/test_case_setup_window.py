@@ -1,4 +1,4 @@
-"""A study widens the window for a wide contact like `solve`."""
+"""For a wide contact, a study widens the window as `solve` does."""
 
 import numpy as np
 import pytest
@@ -35,12 +35,12 @@ def test_default_window_is_widened(tmp_path, changes):
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
     setup = build_setup(base)
-    first_case = setup.grid
+    first_grid = setup.grid
     separate_result = solve_in_first_window(
         create_widening_grids(setup.case, **setup.cells), lambda grid: solve(setup.case, grid, stresses=False)
     )
     stored_case = load_case(tmp_path, study.plan()[0].id)
-    assert separate_result.sizes["y"] > first_case.cells_y
+    assert separate_result.sizes["y"] > first_grid.cells_y
     np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])
     assert stored_case.sizes["y"] == separate_result.sizes["y"]
 
