@@ -18,8 +18,8 @@ from random import Random
 import numpy as np
 
 import contactstudy as cs
-from benchmarks.fuzz.shapes import random_magnitude
-from benchmarks.performance.memory import peak_memory
+from benchmarks.fuzz.shapes import draw_magnitude
+from benchmarks.performance.memory import measure_peak_memory
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.film import Asperities, solve_film
 from contactstudy.film.levels import Level, continue_solution, film_on_level, moes_line
@@ -33,9 +33,9 @@ MAX_LOAD, MAX_LENGTH = 80.0, 90.0  # Number M and length over a of films that ar
 FURTHER_CELLS, FURTHER_COLUMNS = 3, 2  # Refinements of the films for comparison beyond the last level
 
 
-def random_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
+def draw_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
     """A profile with a drop of the order of a design for the pressure."""
-    drop = amplitude * random_magnitude(rng, 0.5, 3.0)
+    drop = amplitude * draw_magnitude(rng, 0.5, 3.0)
     kind = rng.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
     if kind == "Lundberg":
         return cs.profiles.Lundberg(amplitude=drop, delta=rng.choice((0.0, 1.0)))
@@ -48,14 +48,14 @@ def random_profile(rng: Random, amplitude: float, half_width: float, length: flo
     return cs.profiles.PartialCrown(straight, (length - straight) ** 2 / (8 * depth))
 
 
-def random_case(rng: Random) -> cs.Case:
+def draw_case(rng: Random) -> cs.Case:
     """A case with speed and lubricant."""
-    half_width = random_magnitude(rng, 30e-6, 90e-6)
+    half_width = draw_magnitude(rng, 30e-6, 90e-6)
     rigid = rng.random() < 0.5
     modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
     pressure = half_width * modulus / (2 * RADIUS)
-    length = half_width * random_magnitude(rng, 8.0, 250.0)
-    profile = random_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
+    length = half_width * draw_magnitude(rng, 8.0, 250.0)
+    profile = draw_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
     distance = rng.choice((0.0, 0.0, rng.uniform(0.0, 5.0))) * half_width
     tilt = rng.choice((0.0, 0.0, rng.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
     roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
@@ -66,7 +66,7 @@ def random_case(rng: Random) -> cs.Case:
         tilt=tilt,
         max_pressure=pressure,
     )
-    load, lubricant = random_magnitude(rng, 5.0, 2000.0), rng.uniform(2.0, 16.0)
+    load, lubricant = draw_magnitude(rng, 5.0, 2000.0), rng.uniform(2.0, 16.0)
     stiffness = 2 * case.modulus
     speed_root = case.normal_load / (case.contact_length * stiffness * RADIUS * load)
     speed = 0.5 * speed_root**2 * stiffness * RADIUS / VISCOSITY
@@ -79,7 +79,7 @@ def random_case(rng: Random) -> cs.Case:
     return replace(case, lubricant=oil, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
 
 
-def moes_numbers(case: cs.Case) -> tuple[float, float, float]:
+def compute_moes_numbers(case: cs.Case) -> tuple[float, float, float]:
     """Moes' numbers M and L of the mean load per length, and the scale of dimensionless films, metres."""
     assert case.lubricant is not None
     assert isinstance(case.motion, cs.Sliding)
@@ -91,7 +91,7 @@ def moes_numbers(case: cs.Case) -> tuple[float, float, float]:
 
 def solve_seed(seed: int, accuracy: float) -> tuple[str, str]:
     """Solve one seed; return its kind and its line of output."""
-    case = random_case(Random(seed))
+    case = draw_case(Random(seed))
     start_time = time.perf_counter()
     kind, text = "smooth", ""
     try:
@@ -101,7 +101,7 @@ def solve_seed(seed: int, accuracy: float) -> tuple[str, str]:
             if "closes" not in str(error):
                 raise
             kind = "rough"
-            load, lubricant, height = moes_numbers(case)
+            load, lubricant, height = compute_moes_numbers(case)
             central = float(moes_line(load, lubricant)) * height
             film = solve_film(case, accuracy=accuracy, asperities=Asperities(rms=0.1 * central))
         central = float(film.central_film)
@@ -115,13 +115,13 @@ def solve_seed(seed: int, accuracy: float) -> tuple[str, str]:
         kind, text = "failed", f"{kind}: {error}"
     except cs.InvalidInputError as error:
         kind, text = "refused", str(error)
-    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s, peak memory {peak_memory():.0f} MB"
+    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s, peak memory {measure_peak_memory():.0f} MB"
 
 
 def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]] | None:
     """Stated error of each film and its change on finer cells; None for a case with a costly finer film."""
-    case = random_case(Random(seed))
-    if moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
+    case = draw_case(Random(seed))
+    if compute_moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
         return None
     result, film = solve_film(case, accuracy=accuracy), create_film_case(case)
     level = Level(**attribute(result, INPUTS_ATTRIBUTE)["settings"]["level"])
@@ -176,9 +176,9 @@ def main() -> int:
         kinds[kind] += 1
         failed += [seed] if kind == "failed" else []
         print(f"seed {seed}: {kind}: {text}", flush=True)
-    solved = options.cases - kinds["refused"]
+    solved_count = options.cases - kinds["refused"]
     print(", ".join(f"{count} {kind}" for kind, count in kinds.most_common()))
-    print(f"converged: {100 * (solved - kinds['failed']) / max(solved, 1):.1f} %; failed seeds: {failed}")
+    print(f"converged: {100 * (solved_count - kinds['failed']) / max(solved_count, 1):.1f} %; failed seeds: {failed}")
     return int(bool(failed))
 
 

@@ -23,7 +23,7 @@ CREEPAGES = (-0.3, 0.1, 0.4, 0.7)
 """Longitudinal creepages over ``f a / R``."""
 
 
-def middle_force(creepage: float, rows: int, position: float) -> float:
+def compute_middle_force(creepage: float, rows: int, position: float) -> float:
     """Force at mid-length of a long rigid roller over that of full sliding; `rows` across the contact, offset by
     `position` rows."""
     case = cs.Case(
@@ -41,7 +41,7 @@ def middle_force(creepage: float, rows: int, position: float) -> float:
     return float(middle_column["traction_y"].sum() / (FRICTION * middle_column["pressure"].sum()))
 
 
-def random_case(rng: Random) -> cs.Case:
+def draw_case(rng: Random) -> cs.Case:
     """A rigid roller that rolls on a body with free ends."""
     pressure, friction = rng.uniform(0.8e9, 2e9), rng.uniform(0.05, 0.4)
     half_width = 2 * pressure * RADIUS / STEEL.plane_strain_modulus
@@ -60,12 +60,14 @@ def random_case(rng: Random) -> cs.Case:
 def compare_with_finer_cells(case: cs.Case, accuracies: tuple[float, ...] = (0.02, 0.005)) -> list[tuple[float, float]]:
     """Differences of the force from that at accuracy 0.001, and sums of both stated errors, over the force of full
     sliding."""
-    reference, *results = (cs.solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.001, *accuracies))
-    full_sliding = case.friction * float(reference["normal_load"])
+    reference_result, *results = (
+        cs.solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.001, *accuracies)
+    )
+    full_sliding = case.friction * float(reference_result["normal_load"])
     return [
         (
-            float(result.force_y - reference.force_y) / full_sliding,
-            float(result.force_y_error + reference.force_y_error) / full_sliding,
+            float(result.force_y - reference_result.force_y) / full_sliding,
+            float(result.force_y_error + reference_result.force_y_error) / full_sliding,
         )
         for result in results
     ]
@@ -79,7 +81,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     comparisons: list[tuple[float, float]] = []
     for seed in range(options.first, options.first + options.cases):
-        comparisons += compare_with_finer_cells(random_case(Random(seed)))
+        comparisons += compare_with_finer_cells(draw_case(Random(seed)))
         print(
             f"{seed}: " + ", ".join(f"{change:+.4f} of {error:.4f}" for change, error in comparisons[-2:]), flush=True
         )
@@ -89,8 +91,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"covered {covered_fraction:.0%}, median stated over actual error {np.median(errors / changes):.1f}")
         return int(covered_fraction < 0.95)
     for creepage, rows in product(CREEPAGES, (16, 32, 64)):
-        forces = np.array([middle_force(creepage, rows, position) for position in np.arange(-0.5, 0.5, 0.125)])
-        difference = forces - middle_force(creepage, 128, 0.0)
+        forces = np.array([compute_middle_force(creepage, rows, position) for position in np.arange(-0.5, 0.5, 0.125)])
+        difference = forces - compute_middle_force(creepage, 128, 0.0)
         print(f"creepage {creepage:4.1f}, {rows:3d} rows: {np.sqrt(np.mean(difference**2)):.4f} (root mean square)")
     return 0
 

@@ -19,8 +19,8 @@ import numpy as np
 import xarray as xr
 
 import contactstudy as cs
-from benchmarks.fuzz.shapes import random_magnitude
-from tests.closed_forms import largest_von_mises_under_carter
+from benchmarks.fuzz.shapes import draw_magnitude
+from tests.closed_forms import compute_largest_von_mises_under_carter
 
 RADIUS = 5e-3
 STEEL = cs.Material(young=210e9, poisson=0.28)
@@ -42,12 +42,12 @@ class Comparison(NamedTuple):
         return cls(value / reference - 1, error / reference, result)
 
 
-def random_case(rng: Random) -> cs.Case:
+def draw_case(rng: Random) -> cs.Case:
     """A short roller on a body with free ends, mostly of equal materials, that rolls with partial slip."""
     steel = cs.Material(210e9, rng.choice((0.3, 0.3, rng.uniform(0.1, 0.49))))
     roller_material = rng.choice((None, steel, steel, cs.Material(rng.uniform(50e9, 400e9), rng.uniform(0.1, 0.45))))
-    half_width = RADIUS * random_magnitude(rng, 3e-3, 2e-2)
-    length = half_width * random_magnitude(rng, 1.5, 4.0)
+    half_width = RADIUS * draw_magnitude(rng, 3e-3, 2e-2)
+    length = half_width * draw_magnitude(rng, 1.5, 4.0)
     compliance = sum(1 / body.plane_strain_modulus for body in (steel, roller_material) if body is not None)
     pressure = half_width / (2 * RADIUS * compliance)
     profile: cs.profiles.Profile = rng.choice(
@@ -85,8 +85,8 @@ def compare_with_finer_rows(case: cs.Case, accuracy: float) -> Comparison | None
     edges = np.append(result.x_bounds.values[:, 0], result.x_bounds.values[-1, 1])
     half_step = 0.5 * float(result.y[1] - result.y[0])
     window = (float(result.y[0]) - half_step, float(result.y[-1]) + half_step)
-    finer = cs.solve(case, cs.Grid.between(edges, window, 4 * result.sizes["y"]), y=[0.0], z=[0.0])
-    return Comparison.of(result, float(finer.peak_von_mises))
+    fine_result = cs.solve(case, cs.Grid.between(edges, window, 4 * result.sizes["y"]), y=[0.0], z=[0.0])
+    return Comparison.of(result, float(fine_result.peak_von_mises))
 
 
 def compare_with_carter(friction: float, force_fraction: float) -> Comparison:
@@ -102,7 +102,9 @@ def compare_with_carter(friction: float, force_fraction: float) -> Comparison:
     peak_pressure, step = float(result.peak_pressure), float(result.y[1] - result.y[0])
     half_width = 2 * step * float(middle_column.pressure.sum()) / (np.pi * peak_pressure)
     stick_ratio = 1 - creepage * RADIUS / (friction * half_width)
-    return Comparison.of(result, peak_pressure * largest_von_mises_under_carter(friction, stick_ratio, STEEL.poisson))
+    return Comparison.of(
+        result, peak_pressure * compute_largest_von_mises_under_carter(friction, stick_ratio, STEEL.poisson)
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -114,12 +116,15 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     warnings.simplefilter("ignore")
     comparisons: dict[str, Callable[[], Comparison | None]] = {
-        f"seed {seed}": partial(compare_with_finer_rows, random_case(Random(seed)), 0.1)
+        f"seed {seed}": partial(compare_with_finer_rows, draw_case(Random(seed)), 0.1)
         for seed in range(options.first, options.first + options.cases)
     }
     if options.carter:
-        pairs = product(FRICTIONS, FORCE_FRACTIONS)
-        comparisons = {f"friction {pair[0]}, force {pair[1]}": partial(compare_with_carter, *pair) for pair in pairs}
+        parameter_pairs = product(FRICTIONS, FORCE_FRACTIONS)
+        comparisons = {
+            f"friction {parameters[0]}, force {parameters[1]}": partial(compare_with_carter, *parameters)
+            for parameters in parameter_pairs
+        }
     compared = []
     for name, compare in comparisons.items():
         comparison = compare()

@@ -27,7 +27,7 @@ class SlidingLine(NamedTuple):
         return np.asarray(self.peak_scale * self.half_width * shape)
 
 
-def sliding_line(
+def solve_sliding_line_contact(
     load_per_length: float,
     radius: float,
     friction: float,
@@ -54,7 +54,7 @@ def sliding_line(
     return SlidingLine(half_width, 2 * gamma * half_width, gamma, float(modulus * np.cos(np.pi * gamma) / (2 * radius)))
 
 
-def hertz_circle_surface(
+def compute_hertz_surface_stress(
     r: ArrayLike, radius: float, max_pressure: float, poisson: float
 ) -> tuple[FloatArray, FloatArray]:
     """`sigma_rr` and `sigma_tt` on the surface around a frictionless Hertz circle (Johnson 3.42, 3.43)."""
@@ -65,7 +65,9 @@ def hertz_circle_surface(
     return max_pressure * (term - height), max_pressure * (-term - 2 * poisson * height)
 
 
-def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_traction: float, poisson: float) -> Stress:
+def compute_sliding_surface_stress(
+    x: ArrayLike, y: ArrayLike, radius: float, max_traction: float, poisson: float
+) -> Stress:
     """In-plane stresses on the surface inside the circle, from the traction `q` alone (Johnson section 7.1)."""
     traction_scale = -np.pi * max_traction / (8 * radius)
     x_grid, y_grid = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
@@ -76,7 +78,7 @@ def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_tracti
     }
 
 
-def elliptic_line_stresses(y: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+def compute_elliptic_line_stresses(y: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Stresses (yy, zz, yz) under the pressure, and under the traction along +y, ``sqrt(1 - y**2)``.
 
     K. L. Johnson, Contact Mechanics (1985), 4.49 and 7.8.
@@ -91,12 +93,12 @@ def elliptic_line_stresses(y: FloatArray, z: FloatArray) -> tuple[FloatArray, Fl
     return np.array([yy, zz, yz]), np.array([n * (2 - (z**2 - m**2) / squares) - 2 * y, yz, yy])
 
 
-def largest_von_mises_under_carter(friction: float, stick_ratio: float, poisson: float) -> float:
+def compute_largest_von_mises_under_carter(friction: float, stick_ratio: float, poisson: float) -> float:
     """Largest von Mises stress under Carter's traction over the largest pressure, in plane strain."""
     y = np.append(np.linspace(-1.1, 1.1, 441), 1 - 2 * stick_ratio)
     y, z = (axis.ravel() for axis in np.meshgrid(y, np.linspace(0.0, 1.0, 51)))
-    pressure, sliding = elliptic_line_stresses(y, z)
-    sticking = elliptic_line_stresses((y - 1 + stick_ratio) / stick_ratio, z / stick_ratio)[1]
+    pressure, sliding = compute_elliptic_line_stresses(y, z)
+    sticking = compute_elliptic_line_stresses((y - 1 + stick_ratio) / stick_ratio, z / stick_ratio)[1]
     yy, zz, yz = pressure + friction * (sliding - stick_ratio * sticking)
     xx = poisson * (yy + zz)
     squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * yz**2

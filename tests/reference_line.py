@@ -8,7 +8,7 @@ import xarray as xr
 from contactstudy import FiniteLengthSpace, displacement_field
 
 
-def line_slope(body: FiniteLengthSpace, pressure: xr.DataArray, depth: float) -> float:
+def compute_line_slope(body: FiniteLengthSpace, pressure: xr.DataArray, depth: float) -> float:
     """Least-squares slope of the line y = 0 at a depth: a fit at Gauss nodes with their weights."""
     nodes, weights = np.polynomial.legendre.leggauss(16)
     x = 0.5 * body.length * (nodes + 1)

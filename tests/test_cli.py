@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from contactstudy.cli import main
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, format_toml, small_study
 from tests.stand_in_solver import FAILS, WRONG_FRICTION, solve_fake
 from tests.study.conftest import ROOT
 
@@ -17,7 +17,7 @@ from tests.study.conftest import ROOT
 def study_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "small.toml"
-    path.write_text(as_toml(small_study()))
+    path.write_text(format_toml(small_study()))
     return path
 
 
@@ -47,7 +47,7 @@ def test_run_without_figure_writes_no_png(study_file, tmp_path, capsys):
 
 
 def test_failed_cases_return_code_1(study_file, capsys):
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1], "friction": [0, FAILS]})))
+    study_file.write_text(format_toml(small_study(sweep={"e_over_a": [0, 1], "friction": [0, FAILS]})))
     assert run_study_file(study_file) == 1
     assert "failed: e_over_a=0 friction=0.66: WindowError: this friction fails" in capsys.readouterr().out
     assert run_command("status", "results/small") == 1
@@ -55,7 +55,7 @@ def test_failed_cases_return_code_1(study_file, capsys):
 
 
 def test_status_groups_equal_reasons(study_file, capsys):
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, 2], "friction": [FAILS]})))
+    study_file.write_text(format_toml(small_study(sweep={"e_over_a": [0, 1, 2], "friction": [FAILS]})))
     run_study_file(study_file)
     capsys.readouterr()
     assert run_command("status", "results/small") == 1
@@ -77,7 +77,7 @@ def test_plan_solves_no_case(study_file, tmp_path, capsys):
 
 def test_plan_forecasts_new_cases(study_file, capsys):
     run_study_file(study_file)
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, 0.1, 0.2]})))
+    study_file.write_text(format_toml(small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, 0.1, 0.2]})))
     capsys.readouterr()
     assert run_command("plan", study_file, "--all") == 0
     output = capsys.readouterr().out
@@ -86,7 +86,7 @@ def test_plan_forecasts_new_cases(study_file, capsys):
 
 
 def test_skipped_cases_are_printed_with_reason(study_file, capsys):
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, -9], "friction": [0.1]})))
+    study_file.write_text(format_toml(small_study(sweep={"e_over_a": [0, -9], "friction": [0.1]})))
     reason = r"  skipped: .*e_over_a=-9 friction=0\.1: .*body length"
     run_arguments = ("run", study_file, "--workers", 0, "--no-figure")
     for arguments in (("plan", study_file), run_arguments, ("status", "results/small")):
@@ -95,7 +95,7 @@ def test_skipped_cases_are_printed_with_reason(study_file, capsys):
 
 
 def test_plan_groups_equal_reasons(study_file, capsys):
-    study_file.write_text(as_toml(small_study(base=BASE | {"load": 3.0})))
+    study_file.write_text(format_toml(small_study(base=BASE | {"load": 3.0})))
     assert run_command("plan", study_file) == 2
     output = capsys.readouterr().out
     assert output.count("given as one of the three") == 1
@@ -152,7 +152,7 @@ def test_negative_number_of_workers_returns_code_2(study_file, capsys):
 
 
 def test_program_error_is_raised(study_file):
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [WRONG_FRICTION]})))
+    study_file.write_text(format_toml(small_study(sweep={"e_over_a": [0], "friction": [WRONG_FRICTION]})))
     with pytest.raises(ZeroDivisionError):
         run_study_file(study_file)
 
@@ -201,7 +201,9 @@ def test_closed_output_pipe_returns_code_141(study_file, tmp_path):
 
 
 def format_large_study(count):
-    return as_toml(small_study(sweep={"e_over_a": [number / 100 for number in range(count)], "friction": [0.0, 0.1]}))
+    return format_toml(
+        small_study(sweep={"e_over_a": [number / 100 for number in range(count)], "friction": [0.0, 0.1]})
+    )
 
 
 def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
@@ -224,7 +226,7 @@ def test_oversized_study_raises(study_file, capsys):
         "e_over_a": [number / 1000 for number in range(1001)],
         "friction": [number / 1000 for number in range(1000)],
     }
-    study_file.write_text(as_toml(small_study(sweep=sweep)))
+    study_file.write_text(format_toml(small_study(sweep=sweep)))
     assert run_command("plan", study_file, "--yes") == 2
     assert "1001000 combinations" in capsys.readouterr().err
 
@@ -246,7 +248,7 @@ def test_special_characters_in_labels_are_escaped(study_file, tmp_path):
         for row in profiles
     ]
     del study.sweep["profile"]
-    study_file.write_text("\n".join([as_toml(study), *rows]))
+    study_file.write_text("\n".join([format_toml(study), *rows]))
     assert run_command("run", study_file, "--workers", 0) == 0
     assert list((tmp_path / "results" / "small").glob("*.png"))
     assert run_command("export", "results/small") == 0

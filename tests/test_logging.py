@@ -13,7 +13,7 @@ from contactstudy import Case, HalfSpace, Material, Roller, solve
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
 from contactstudy.cli import main
 from contactstudy.study import run_study
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 BODY = HalfSpace(material=Material(210e9, 0.3))
@@ -43,7 +43,7 @@ def test_study_progress_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixtu
 
 
 def test_verbose_option_logs_to_stderr(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    (tmp_path / "small.toml").write_text(as_toml(small_study()))
+    (tmp_path / "small.toml").write_text(format_toml(small_study()))
     arguments = ["run", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out"), "--workers", "0", "--no-figure"]
     logger = logging.getLogger("contactstudy")
     previous_level = logger.level

@@ -33,7 +33,7 @@ for_bodies_and_grids = pytest.mark.parametrize(
 )
 
 
-def label_pressure(grid: Grid, cell_loads: np.ndarray) -> xr.DataArray:
+def make_pressure(grid: Grid, cell_loads: np.ndarray) -> xr.DataArray:
     coords = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
     return xr.DataArray(cell_loads, coords, ("x", "y"))
 
@@ -41,8 +41,8 @@ def label_pressure(grid: Grid, cell_loads: np.ndarray) -> xr.DataArray:
 def make_load_arguments(grid: Grid, cell_loads: np.ndarray, load: str) -> dict[str, xr.DataArray]:
     """Keywords of the labelled functions for one load."""
     if load == "pressure":
-        return {"pressure": label_pressure(grid, cell_loads)}
-    return {"pressure": label_pressure(grid, 0 * cell_loads), load: label_pressure(grid, cell_loads)}
+        return {"pressure": make_pressure(grid, cell_loads)}
+    return {"pressure": make_pressure(grid, 0 * cell_loads), load: make_pressure(grid, cell_loads)}
 
 
 def assert_exact_transpose(operator) -> None:

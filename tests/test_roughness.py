@@ -143,10 +143,10 @@ def test_missing_grid_raises(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"drop": (3,)}, "height = 'missing or not finite at x = 0 m, y = -0.0002 m'"),
-        ({"drop": tuple(range(11 * 4, 11 * 8))}, "x = '1 gaps: 0.0003 to 0.0008 m'"),
-        ({"more": "\n0, 0, 7"}, "height = '2 values at x = 0 m, y = 0 m'"),
-        ({"more": "\n0, , 7"}, "y = 'nan at position"),
+        ({"omitted_rows": (3,)}, "height = 'missing or not finite at x = 0 m, y = -0.0002 m'"),
+        ({"omitted_rows": tuple(range(11 * 4, 11 * 8))}, "x = '1 gaps: 0.0003 to 0.0008 m'"),
+        ({"appended": "\n0, 0, 7"}, "height = '2 values at x = 0 m, y = 0 m'"),
+        ({"appended": "\n0, , 7"}, "y = 'nan at position"),
         ({"header": "x [mm], y [mm], height [kg]"}, "unit of height = 'kg'"),
         ({"header": "x [mm], y, height [um]"}, "unit of y = None"),
         ({"header": "x [mm], z [mm], height [um]"}, "columns"),

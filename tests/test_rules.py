@@ -100,9 +100,9 @@ def list_fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str
 
 def find_import_circle(modules: dict[str, str], stubs: dict[str, str]) -> list[str]:
     """Modules of a circle of imports, lazy imports and imports for types included; empty without a circle."""
-    texts = {module_name(path): text for path, text in modules.items()}
+    texts = {format_module_name(path): text for path, text in modules.items()}
     source_modules = {  # module of each lazily imported name of a package
-        f"{module_name(path)}.{entry.name}": f"{module_name(path)}.{node.module or entry.name}"
+        f"{format_module_name(path)}.{entry.name}": f"{format_module_name(path)}.{node.module or entry.name}"
         for path, text in stubs.items()
         for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.ImportFrom)
@@ -126,7 +126,7 @@ def find_import_circle(modules: dict[str, str], stubs: dict[str, str]) -> list[s
     return []
 
 
-def module_name(path: str) -> str:
+def format_module_name(path: str) -> str:
     """Dotted name of a module from its path within the package."""
     parts = ("contactstudy", *Path(path).with_suffix("").parts)
     return ".".join(part for part in parts if part != "__init__")

@@ -12,7 +12,7 @@ from benchmarks.faults.table import Row, write_table
 
 def run_trials(kills: int) -> list[Row]:
     """Table of the trials of every fault."""
-    undisturbed = studies.undisturbed_values()
+    undisturbed = studies.compute_undisturbed_values()
     trials = (
         lambda: scenarios.kill_runs(undisturbed, kills - kills // 4),
         lambda: scenarios.kill_runs(undisturbed, kills // 4, workers=2),

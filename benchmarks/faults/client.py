@@ -25,7 +25,7 @@ from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
 
-def stand_in_study(cases: int) -> Study:
+def make_stand_in_study(cases: int) -> Study:
     """Return a study for the stand-in solver."""
     count = round(cases**0.5)
     sweep = {"e_over_a": np.linspace(0.0, 4.0, count).tolist(), "tilt": np.linspace(0.0, 1e-4, cases // count).tolist()}
@@ -56,7 +56,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=3, help="number of runs of either kind")
     options = parser.parse_args()
     os.environ.update(WORKER_ENVIRONMENT)
-    study = stand_in_study(options.cases)
+    study = make_stand_in_study(options.cases)
     times: dict[str, list[float]] = {"client": [], "local": []}
     with (
         tempfile.TemporaryDirectory(prefix="client-") as folder_name,

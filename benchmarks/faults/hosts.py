@@ -15,10 +15,10 @@ from benchmarks.faults import studies
 from benchmarks.faults.studies import CASES, SECONDS
 from benchmarks.faults.table import Row
 from tests.stand_in_solver import give_tickets
-from tests.study.conftest import start_run, tickets_of
+from tests.study.conftest import locate_tickets, start_run
 
 
-def _system(host_name: str) -> list[str]:
+def _format_host_command(host_name: str) -> list[str]:
     """Prefix of a command that runs in a system with the host's `name` and separate process numbers."""
     separate = ["unshare", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
     return [*separate, "sh", "-c", 'hostname "$0" && exec "$@"', host_name]
@@ -30,7 +30,9 @@ def run_on_two_hosts(undisturbed: xr.Dataset, count: int) -> Row:
     host_names = ["another-host", socket.gethostname()]
     is_possible = (
         shutil.which("unshare")
-        and not subprocess.run([*_system(host_names[0]), "true"], capture_output=True, check=False).returncode
+        and not subprocess.run(
+            [*_format_host_command(host_names[0]), "true"], capture_output=True, check=False
+        ).returncode
     )
     if not is_possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with another name")
@@ -41,18 +43,18 @@ def run_on_two_hosts(undisturbed: xr.Dataset, count: int) -> Row:
 
 def _survives(undisturbed: xr.Dataset, host_name: str, *, killed: bool) -> bool:
     """Whether each case is solved once, to the last bit of an undisturbed run."""
-    with studies.study_folder() as folder:
+    with studies.make_study_folder() as folder:
         outputs, study = folder / "out", folder / "study.toml"
-        first_run = start_run(study, outputs, "--workers", "0", tickets=2, prefix=_system(host_name))
-        studies.wait(first_run, lambda: len(studies.finished_cases(folder)) == 2)
+        first_run = start_run(study, outputs, "--workers", "0", tickets=2, prefix=_format_host_command(host_name))
+        studies.wait(first_run, lambda: len(studies.list_finished_cases(folder)) == 2)
         is_right = _is_refused(folder, host_name)
         if killed:
             os.killpg(first_run.pid, signal.SIGKILL)
             first_run.communicate()
-            is_right = is_right and len(studies.finished_cases(folder)) == 2
-            is_right = is_right and studies.resume(folder) == {"ok": CASES}
+            is_right = is_right and len(studies.list_finished_cases(folder)) == 2
+            is_right = is_right and studies.resume_study(folder) == {"ok": CASES}
         else:
-            give_tickets(tickets_of(outputs), CASES)
+            give_tickets(locate_tickets(outputs), CASES)
             first_run.communicate(timeout=SECONDS)
             is_right = is_right and first_run.returncode == 0 and not studies.list_leftovers(folder)
         return is_right and studies.read_values(folder).identical(undisturbed)

@@ -19,7 +19,7 @@ import xarray as xr
 
 from contactstudy.study import Study, open_study
 from contactstudy.study.folder import Folder
-from tests.small_study import BASE, as_toml
+from tests.small_study import BASE, format_toml
 from tests.study.conftest import ROOT
 
 LONGITUDINAL_CREEPAGES, LATERAL_CREEPAGES = 25, 5
@@ -68,7 +68,7 @@ def count_finished(folder: Path) -> int:
 def run_study(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:
     """Values of a study without the times; the run is killed after `kill_at` cases, and resumed."""
     folder.mkdir()
-    (folder / "study.toml").write_text(as_toml(study))
+    (folder / "study.toml").write_text(format_toml(study))
     if kill_at is not None:
         process = start_process(folder, workers)
         deadline = time.monotonic() + SECONDS

@@ -22,10 +22,10 @@ from benchmarks.faults.table import Row
 from contactstudy.study import run_study
 from contactstudy.study.batches import read_batch
 from contactstudy.study.folder import Folder
-from tests.small_study import as_toml
+from tests.small_study import format_toml
 from tests.stand_in_solver import HELD, give_tickets, solve_fake
 from tests.study.cluster import cluster
-from tests.study.conftest import start_run, tickets_of
+from tests.study.conftest import locate_tickets, start_run
 
 rng = random.Random(17)
 
@@ -33,22 +33,22 @@ rng = random.Random(17)
 def kill_runs(undisturbed: xr.Dataset, count: int, *, workers: int = 0) -> Row:
     """SIGKILL to the run and its workers, at a random time."""
     passed = kept_count = 0
-    run_seconds = _seconds_of_a_run(workers)
-    with studies.study_folder() as folder:
+    run_seconds = _measure_run_seconds(workers)
+    with studies.make_study_folder() as folder:
         for _ in range(count):
-            if len(studies.finished_cases(folder)) > 0.7 * CASES:  # cases remain unsolved until the last kill
+            if len(studies.list_finished_cases(folder)) > 0.7 * CASES:  # cases remain unsolved until the last kill
                 shutil.rmtree(folder / "out" / "batches")
-            count_before = studies.finished_cases(folder)
+            count_before = studies.list_finished_cases(folder)
             process = _start_until_batch(folder, workers)
             studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             time.sleep(rng.uniform(0.0, run_seconds))
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            count_after = studies.finished_cases(folder)
+            count_after = studies.list_finished_cases(folder)
             kept_count += len(set(count_after) - set(count_before))
             lost_cases = [identity for identity, run in count_before.items() if count_after.get(identity) != run]
             passed += not lost_cases and not studies.count_damaged_batches(folder)
-        complete = studies.resume(folder) == {"ok": CASES}
+        complete = studies.resume_study(folder) == {"ok": CASES}
         complete &= studies.read_values(folder).identical(undisturbed)
         complete &= not studies.list_leftovers(folder) and not (folder / "out" / "set-aside").exists()
     worker_text = "alone" if workers == 0 else f"with {workers} workers"
@@ -64,9 +64,9 @@ def _start_until_batch(folder: Path, workers: int) -> subprocess.Popen[str] | st
     return studies.start(folder, "--workers", str(workers)) if workers else studies.Forked(folder)
 
 
-def _seconds_of_a_run(workers: int) -> float:
+def _measure_run_seconds(workers: int) -> float:
     """Time from the lock to the end of an undisturbed run, on this machine."""
-    with studies.study_folder() as folder:
+    with studies.make_study_folder() as folder:
         process = _start_until_batch(folder, workers)
         studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
         start_time = time.monotonic()
@@ -79,7 +79,7 @@ def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
     passed = cases = 0
     mounted = False
     for _ in range(count):
-        with studies.study_folder() as folder:
+        with studies.make_study_folder() as folder:
             disk = folder / "out"
             disk.mkdir()
             size = rng.randint(150, 500)
@@ -92,13 +92,13 @@ def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
                 )
                 _, errors = process.communicate(timeout=SECONDS)
                 is_reported = process.returncode == 2 and "Traceback" not in errors
-                cases += len(studies.finished_cases(folder))
+                cases += len(studies.list_finished_cases(folder))
                 is_correct = (
                     is_reported and not studies.list_leftovers(folder) and not studies.count_damaged_batches(folder)
                 )
                 if can_mount:
                     subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
-                is_correct = is_correct and studies.resume(folder) == {"ok": CASES}
+                is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
                 passed += is_correct and studies.read_values(folder).identical(undisturbed)
             finally:
                 if can_mount:
@@ -117,18 +117,21 @@ def kill_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
     """The scheduler of a cluster is killed while its worker solves."""
     passed = 0
     for _ in range(count):
-        with studies.study_folder() as folder:
+        with studies.make_study_folder() as folder:
             outputs = folder / "out"
-            with mock.patch.dict(os.environ, {HELD: str(tickets_of(outputs))}), cluster(folder, workers=1) as address:
+            with (
+                mock.patch.dict(os.environ, {HELD: str(locate_tickets(outputs))}),
+                cluster(folder, workers=1) as address,
+            ):
                 tickets = rng.randint(1, 20)
                 process = start_run(folder / "study.toml", outputs, "--scheduler", address, tickets=tickets)
-                studies.wait(process, partial(studies.finished_cases, folder))
+                studies.wait(process, partial(studies.list_finished_cases, folder))
                 time.sleep(rng.uniform(0.0, 1.0))
                 address.processes[0].kill()
                 _, errors = process.communicate(timeout=SECONDS)
             is_correct = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
             is_correct = is_correct and not Folder(outputs).holders and not studies.count_damaged_batches(folder)
-            is_correct = is_correct and studies.resume(folder) == {"ok": CASES}
+            is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
             passed += is_correct and studies.read_values(folder).identical(undisturbed)
     return Row("scheduler of a cluster killed", count, passed, "code 2, message, no lock held; resumed bit for bit")
 
@@ -136,12 +139,12 @@ def kill_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
 def damage_batches(undisturbed: xr.Dataset, count: int) -> Row:
     """Files of batches are cut off, changed, exchanged, or replaced by other files."""
     passed = 0
-    with studies.study_folder() as folder:
+    with studies.make_study_folder() as folder:
         set_aside_folder = folder / "out" / "set-aside"
         for index in range(count):
             shutil.rmtree(folder / "out", ignore_errors=True)
             with mock.patch.object(Folder, "compact", return_value=None):
-                studies.resume(folder)  # without joining, the folder contains several batches
+                studies.resume_study(folder)  # without joining, the folder contains several batches
             path, second_path = rng.sample(studies.batches(folder), 2)
             lost_cases = len(read_batch(path))
             DAMAGES[index % len(DAMAGES)](path, second_path)
@@ -164,7 +167,7 @@ def damage_batches(undisturbed: xr.Dataset, count: int) -> Row:
     )
 
 
-def _tear(path: Path, other_batch_path: Path) -> None:
+def _tear_file(path: Path, other_batch_path: Path) -> None:
     data = path.read_bytes()
     path.write_bytes(data[: rng.randrange(len(data))])
 
@@ -184,11 +187,11 @@ def _write_empty(path: Path, other_batch_path: Path) -> None:
     path.write_bytes(b"")
 
 
-def _exchange(path: Path, other_batch_path: Path) -> None:
+def _exchange_files(path: Path, other_batch_path: Path) -> None:
     shutil.copy(other_batch_path, path)
 
 
-def _link_to_nothing(path: Path, other_batch_path: Path) -> None:
+def _make_dangling_link(path: Path, other_batch_path: Path) -> None:
     path.unlink()
     path.symlink_to(path.with_name("nowhere"))
 
@@ -199,12 +202,12 @@ def _make_folder(path: Path, other_batch_path: Path) -> None:
 
 
 DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
-    _tear,
+    _tear_file,
     _change_bytes,
     _write_foreign_text,
     _write_empty,
-    _exchange,
-    _link_to_nothing,
+    _exchange_files,
+    _make_dangling_link,
     _make_folder,
 )
 
@@ -212,8 +215,8 @@ DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
 def damage_records(undisturbed: xr.Dataset, count: int) -> Row:
     """Files of the output folder beside the batches (log, lock) are changed and cut off."""
     passed = 0
-    with studies.study_folder() as folder:
-        studies.resume(folder)
+    with studies.make_study_folder() as folder:
+        studies.resume_study(folder)
         outputs = folder / "out"
         records = [
             path for path in outputs.iterdir() if path.is_file() and path.name not in ("study.json", "study.toml")
@@ -233,17 +236,17 @@ def damage_records(undisturbed: xr.Dataset, count: int) -> Row:
 def start_second_runs(undisturbed: xr.Dataset, count: int) -> Row:
     """Further runs begin during a run."""
     passed = 0
-    with studies.study_folder() as folder:
+    with studies.make_study_folder() as folder:
         outputs = folder / "out"
         holder_run = start_run(folder / "study.toml", outputs, "--workers", "0", tickets=2)
-        studies.wait(holder_run, lambda: len(studies.finished_cases(folder)) == 2)
+        studies.wait(holder_run, lambda: len(studies.list_finished_cases(folder)) == 2)
         refused_runs = [start_run(folder / "study.toml", outputs, "--workers", "0", tickets=0) for _ in range(count)]
         for refused_run in refused_runs:
             _, errors = refused_run.communicate(timeout=SECONDS)
             passed += (
                 refused_run.returncode == 2 and f"process {holder_run.pid} on " in errors and "Traceback" not in errors
             )
-        give_tickets(tickets_of(outputs), CASES)
+        give_tickets(locate_tickets(outputs), CASES)
         holder_run.communicate(timeout=SECONDS)
         is_complete = holder_run.returncode == 0 and studies.read_values(folder).identical(undisturbed)
     return Row(
@@ -258,7 +261,7 @@ def run_simultaneously(undisturbed: xr.Dataset, count: int) -> Row:
     """Two runs begin at the same moment."""
     passed = 0
     for _ in range(count):
-        with studies.study_folder() as folder:
+        with studies.make_study_folder() as folder:
             runs = [studies.start(folder, "--workers", "0") for _ in range(2)]
             error_outputs = [run.communicate(timeout=SECONDS)[1] for run in runs]
             codes = [run.returncode for run in runs]
@@ -278,10 +281,10 @@ def shift_clock(undisturbed: xr.Dataset, count: int) -> Row:
     """The time of day jumps by up to ten years either way at every reading, in this process."""
     passed = 0
     for _ in range(count):
-        with studies.study_folder() as folder, _jumping_clock():
-            is_correct = studies.resume(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
+        with studies.make_study_folder() as folder, _jumping_clock():
+            is_correct = studies.resume_study(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
             studies.batches(folder)[0].unlink()
-            is_correct = is_correct and studies.resume(folder) == {"ok": CASES}
+            is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
             passed += is_correct and studies.read_values(folder).identical(undisturbed)
     return Row(
         "clock of the process jumps by up to ten years at every reading",
@@ -304,10 +307,10 @@ class _jumping_clock:  # noqa: N801
         modules = ("folder", "run", "worker", "files")
         self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", JumpingClock) for name in modules]
 
-        def shifted_time() -> float:
+        def compute_shifted_time() -> float:
             return real_time() + rng.uniform(-3e8, 3e8)
 
-        self._patches.append(mock.patch("time.time", shifted_time))
+        self._patches.append(mock.patch("time.time", compute_shifted_time))
         for patch in self._patches:
             patch.start()
 
@@ -320,10 +323,10 @@ def edit_study_file(undisturbed: xr.Dataset, count: int) -> Row:
     """The file of the study changes during a run."""
     passed = 0
     for _ in range(count):
-        with studies.study_folder() as folder:
+        with studies.make_study_folder() as folder:
             process = studies.start(folder, "--workers", "0")
             studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
-            text = as_toml(STUDY)
+            text = format_toml(STUDY)
             (folder / "study.toml").write_text(text[: rng.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
             passed += (

@@ -19,7 +19,7 @@ from contactstudy.study import open_study, run_study, worker
 from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import HELD, solve_fake
 from tests.study.conftest import ROOT
 
@@ -31,11 +31,11 @@ SECONDS = 300.0
 
 
 @contextmanager
-def study_folder() -> Iterator[Path]:
+def make_study_folder() -> Iterator[Path]:
     """Folder with the study as a file."""
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         folder = Path(name)
-        (folder / "study.toml").write_text(as_toml(STUDY))
+        (folder / "study.toml").write_text(format_toml(STUDY))
         yield folder
 
 
@@ -94,7 +94,7 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def finished_cases(folder: Path) -> dict[str, int]:
+def list_finished_cases(folder: Path) -> dict[str, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
     return Folder(folder / "out").results().cases["run"].to_dict()
 
@@ -104,7 +104,7 @@ def count_damaged_batches(folder: Path) -> int:
     return sum(bool(find_damage(path)) for path in batches(folder))
 
 
-def resume(folder: Path) -> dict[str, int]:
+def resume_study(folder: Path) -> dict[str, int]:
     """Run the study to its end, in this process; counts by state."""
     return dict(run_study(STUDY, folder / "out", workers=0, solver=solve_fake).counts)
 
@@ -120,10 +120,10 @@ def list_leftovers(folder: Path) -> list[Path | str]:
     return [*out.glob("**/*.part"), *Folder(out).holders]
 
 
-def undisturbed_values() -> xr.Dataset:
+def compute_undisturbed_values() -> xr.Dataset:
     """Return the opened study of a run without faults."""
-    with study_folder() as folder:
-        assert resume(folder) == {"ok": CASES}
+    with make_study_folder() as folder:
+        assert resume_study(folder) == {"ok": CASES}
         return read_values(folder)
 
 

@@ -33,7 +33,7 @@ MAX_STEP = 0.3
 """Largest distance between nodes."""
 
 
-def graded_nodes(start: float, stop: float) -> Array:
+def make_graded_nodes(start: float, stop: float) -> Array:
     """Nodes from `start` to `stop`, graded to both."""
     end_steps = np.array(STEPS)
     end_steps = end_steps[end_steps < 0.4 * (stop - start)]
@@ -42,7 +42,7 @@ def graded_nodes(start: float, stop: float) -> Array:
     return np.concatenate([[start], start + end_steps[:-1], inner, stop - end_steps[-2::-1], [stop]])
 
 
-def mirrored_hats(nodes: Array) -> list[Callable[[Array], Array]]:
+def make_mirrored_hats(nodes: Array) -> list[Callable[[Array], Array]]:
     """Hats on the first half of the nodes, each with its mirror image about mid-length."""
 
     def mirrored_hat(index: int) -> Callable[[Array], Array]:
@@ -66,13 +66,13 @@ class Flexibility:
 
 def compute_flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
     """Solve for every wavenumber; the body is cut where the load of the panel's smallest one has decayed."""
-    nodes = graded_nodes(case.start, case.stop)
-    margin = graded_nodes(0.0, case.start)[:-1] if case.start > 0 else np.zeros(0)
+    nodes = make_graded_nodes(case.start, case.stop)
+    margin = make_graded_nodes(0.0, case.start)[:-1] if case.start > 0 else np.zeros(0)
     edges = np.concatenate([margin, nodes, (case.length - margin)[::-1]])
     x = Line(edges=edges, order=resolution.order)
-    hats = mirrored_hats(nodes)
+    hats = make_mirrored_hats(nodes)
     loads = np.array([x.load(hat) for hat in hats])
-    depth = resolution.mesh_z()
+    depth = resolution.make_mesh_z()
     gauss_nodes = legendre.leggauss(resolution.nodes)[0]
     wavenumbers, matrices = [], []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
@@ -132,7 +132,7 @@ def solve(case: ContactCase, flexibility: Flexibility, step: float, window: floa
     """Contact with hats `step` apart along y up to `window`; `stride` 2 omits every other node along x."""
     y = step * np.arange(round(window / step) + 1)
     strips = integrate_wavenumbers(flexibility, step, 2 * y.size - 1)
-    merge = _coarsen(flexibility.nodes, stride)
+    merge = _compute_coarse_hats(flexibility.nodes, stride)
     row = np.arange(y.size)
     multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat away from the middle includes its mirror image
     # The unknown of a row is also that of its mirror image at -y: the flexibilities of both rows add up.
@@ -153,7 +153,7 @@ def solve(case: ContactCase, flexibility: Flexibility, step: float, window: floa
     return SolvedContact(flexibility.nodes, y, pressure_both_sides)
 
 
-def _coarsen(nodes: Array, stride: int) -> Array:
+def _compute_coarse_hats(nodes: Array, stride: int) -> Array:
     """Hats on every `stride`-th node as sums of the hats on all nodes: array (coarse, fine)."""
     half_nodes = nodes[: (nodes.size + 1) // 2]
     coarse_nodes = np.unique(np.append(np.arange(0, half_nodes.size, stride), half_nodes.size - 1))
@@ -166,7 +166,7 @@ def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
     widths = np.diff(nodes)
     x = nodes[:-1, None] + 0.5 * widths[:, None] * (node + 1)
     values = 0.5 * widths[:, None] * weight * function(x)
-    return np.array([float((values * hat(x)).sum()) for hat in mirrored_hats(nodes)])
+    return np.array([float((values * hat(x)).sum()) for hat in make_mirrored_hats(nodes)])
 
 
 def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:

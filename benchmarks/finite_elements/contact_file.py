@@ -35,33 +35,37 @@ def solve_reference(case: ContactCase) -> xr.Dataset:
     """The contact with its error estimate."""
     flexibilities = {
         resolution: compute_flexibility(case, resolution)
-        for resolution in dict.fromkeys([PRODUCTION, LOWER, *(variant for variant, _ in VARIANTS.values())])
+        for resolution in dict.fromkeys(
+            [PRODUCTION, LOWER, *(changed_resolution for changed_resolution, _ in VARIANTS.values())]
+        )
     }
     production = solve(case, flexibilities[PRODUCTION], STEP, WINDOW)
 
-    def on_nodes(solution: SolvedContact) -> np.ndarray:
+    def evaluate_on_nodes(solution: SolvedContact) -> np.ndarray:
         resampled = np.array([np.interp(production.x, solution.x, row) for row in solution.pressure.T])
         return np.array([np.interp(production.y, solution.y, row) for row in resampled.T])
 
-    def line_load(pressure: np.ndarray) -> np.ndarray:
+    def compute_line_load(pressure: np.ndarray) -> np.ndarray:
         return np.asarray(2 * np.trapezoid(pressure, production.y, axis=1))
 
     changes = {
-        name: on_nodes(solve(case, flexibilities[variant], STEP, WINDOW))
-        - on_nodes(solve(case, flexibilities[reference], STEP, WINDOW))
-        for name, (variant, reference) in VARIANTS.items()
+        name: evaluate_on_nodes(solve(case, flexibilities[changed_resolution], STEP, WINDOW))
+        - evaluate_on_nodes(solve(case, flexibilities[reference_resolution], STEP, WINDOW))
+        for name, (changed_resolution, reference_resolution) in VARIANTS.items()
     }
-    changes["hats_y"] = (on_nodes(solve(case, flexibilities[PRODUCTION], 2 * STEP, WINDOW)) - production.pressure) / 3
+    changes["hats_y"] = (
+        evaluate_on_nodes(solve(case, flexibilities[PRODUCTION], 2 * STEP, WINDOW)) - production.pressure
+    ) / 3
     changes["hats_x"] = (
-        on_nodes(solve(case, flexibilities[PRODUCTION], STEP, WINDOW, stride=2)) - production.pressure
+        evaluate_on_nodes(solve(case, flexibilities[PRODUCTION], STEP, WINDOW, stride=2)) - production.pressure
     ) / 3
     fields = {
         "pressure": production.pressure,
         "pressure_error": sum(np.abs(change) for change in changes.values()),
     }
     loads = {
-        "line_load": line_load(production.pressure),
-        "line_load_error": sum(np.abs(line_load(change)) for change in changes.values()),
+        "line_load": compute_line_load(production.pressure),
+        "line_load_error": sum(np.abs(compute_line_load(change)) for change in changes.values()),
     }
     dataset = xr.Dataset(
         {name: (("x", "y"), values, {"units": "p0"}) for name, values in fields.items()}

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 ORDER, SMALLEST = 5, 0.02  # order of the elements, and width of the elements at the borders of the rectangle
 
 
-def graded_nodes(points: Array, smallest: float, largest: float) -> Array:
+def make_graded_nodes(points: Array, smallest: float, largest: float) -> Array:
     """Element edges that pass through the points, with small elements at each point."""
     edges = [points[:1]]
     for low, high in pairwise(points):
@@ -28,12 +28,12 @@ def graded_nodes(points: Array, smallest: float, largest: float) -> Array:
     return np.concatenate(edges)
 
 
-def _slope(line: Line, g: Callable[[Array], Array]) -> Array:
+def _compute_slope(line: Line, g: Callable[[Array], Array]) -> Array:
     """Integrals of `g` times each shape function's derivative."""
     return np.asarray(LinearForm(lambda v, w: g(w.x[0]) * v.grad[0]).assemble(line.basis))
 
 
-def residual_stress(
+def compute_residual_stress(
     length: float,
     rectangle: tuple[tuple[float, float], tuple[float, float]],
     eigenstrain: Array,
@@ -43,8 +43,8 @@ def residual_stress(
 ) -> Array:
     """Stresses (6, x, z) over the shear modulus of eigenstrains (xx, yy, zz, xy, xz, yz) in one rectangle."""
     (x_low, x_high), (z_low, z_high) = rectangle
-    across = Line(edges=graded_nodes(np.unique([0.0, x_low, x_high, length]), SMALLEST, 0.3 * length), order=ORDER)
-    depth = graded_nodes(np.unique([0.0, z_low, z_high, 2 * length]), SMALLEST, 0.5 * length)
+    across = Line(edges=make_graded_nodes(np.unique([0.0, x_low, x_high, length]), SMALLEST, 0.3 * length), order=ORDER)
+    depth = make_graded_nodes(np.unique([0.0, z_low, z_high, 2 * length]), SMALLEST, 0.5 * length)
     depth_line = Line(edges=np.append(depth, 2 * length * np.array([1.5, 2, 3, 4, 6])), order=ORDER)
     body = HarmonicBody(across, depth_line, poisson)
     lam = 2 * poisson / (1 - 2 * poisson)
@@ -57,7 +57,7 @@ def residual_stress(
 
     in_x, in_z = indicator(x_low, x_high), indicator(z_low, z_high)
     (value_x, slope_x), (value_z, slope_z) = (
-        (line.load(g), _slope(line, g)) for line, g in ((across, in_x), (depth_line, in_z))
+        (line.load(g), _compute_slope(line, g)) for line, g in ((across, in_x), (depth_line, in_z))
     )
     generalised_force = np.stack(
         [

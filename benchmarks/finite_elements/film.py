@@ -34,7 +34,7 @@ START_FILM, CLOSING = 0.3, 0.6
 """Least film of the start, and largest relative decrease of a film in one step."""
 
 
-def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
+def compute_compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
     """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), up to a constant."""
     widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
     midpoints = x_edges[:-1] + 0.5 * widths
@@ -44,7 +44,7 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
         for low, high in pairwise(x_edges)
     ]
     loads = np.array([x.load(shape) for shape, _ in shapes])
-    depth, n = resolution.mesh_z(), resolution.nodes
+    depth, n = resolution.make_mesh_z(), resolution.nodes
     gauss_nodes = legendre.leggauss(n)[0]
     inverse_legendre = np.linalg.inv(legendre.legvander(gauss_nodes, n - 1))
     ends = [(y[:, None] - y + 0.5 * side * lengths).ravel() for side in (1, -1)]
@@ -147,7 +147,7 @@ class Reynolds:
         return matrices[0], matrices[1]
 
 
-def mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
+def compute_mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
     """Gap, mean over columns, at positions along y."""
     position = 2 * x_edges / case.length - 1
     integral = xlogy(1 + position, 1 + position) - xlogy(1 - position, 1 - position) - 2 * position
@@ -160,7 +160,7 @@ def solve(
 ) -> tuple[Array, Array]:
     """Pressure and film (x, y), by pseudo-time steps and then the steady state."""
     x, y = (0.5 * (edges[1:] + edges[:-1]) for edges in (x_edges, y_edges))
-    gap, lengths = mean_gap(case, x_edges, y), np.diff(y_edges)
+    gap, lengths = compute_mean_gap(case, x_edges, y), np.diff(y_edges)
     # Load of the line contact of half-width and peak pressure 1 over the whole length
     load = LINE_LOAD * case.length
     areas = np.multiply.outer(np.diff(x_edges), lengths).ravel()

@@ -27,17 +27,17 @@ COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def _mass(u: Any, v: Any, _: Any) -> Any:
+def _compute_mass(u: Any, v: Any, _: Any) -> Any:
     return u * v
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def _stiffness(u: Any, v: Any, _: Any) -> Any:
+def _compute_stiffness(u: Any, v: Any, _: Any) -> Any:
     return u.grad[0] * v.grad[0]
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
-def _mixed(u: Any, v: Any, _: Any) -> Any:
+def _compute_mixed(u: Any, v: Any, _: Any) -> Any:
     return u * v.grad[0]
 
 
@@ -55,7 +55,9 @@ class Line:
     def __post_init__(self) -> None:
         mesh = MeshLine(np.asarray(self.edges, dtype=float))
         self.basis = Basis(mesh, ElementLinePp(self.order), intorder=2 * self.order + 8)
-        self.mass, self.stiffness, self.mixed = (f.assemble(self.basis) for f in (_mass, _stiffness, _mixed))
+        self.mass, self.stiffness, self.mixed = (
+            f.assemble(self.basis) for f in (_compute_mass, _compute_stiffness, _compute_mixed)
+        )
 
     def load(self, g: Callable[[Array], Array]) -> Array:
         """Integrals of `g` times each shape function."""
@@ -104,9 +106,9 @@ class HarmonicBody:
             [[none, xy, none], [xy.T, none, yz], [none, yz.T, none]],
             [[mm, none, none], [none, (lam + 2) * mm, none], [none, none, mm]],
         )
-        self._matrices = [self._restrict(sp.bmat(p, format="csr")) for p in blocks]
+        self._matrices = [self._restrict_matrix(sp.bmat(p, format="csr")) for p in blocks]
 
-    def _restrict(self, matrix: sp.csr_matrix) -> sp.csc_matrix:
+    def _restrict_matrix(self, matrix: sp.csr_matrix) -> sp.csc_matrix:
         return matrix[self._free][:, self._free].tocsc()
 
     def solve(self, k: float, shapes: Sequence[tuple[Callable[[Array], Array], str]]) -> Array:

@@ -137,27 +137,27 @@ class PlasticStrip:
         elements, points = self.order
         return np.asarray(np.asarray(self.basis.global_coordinates())[1][elements[:, 0], points[:, 0]])
 
-    def elastic_stress(self, position: float) -> Array:
+    def compute_elastic_stress(self, position: float) -> Array:
         """Stress (4, element, point) of the elastic contact at a position along y."""
         y, z = np.asarray(self.basis.global_coordinates())
         distance = (y - position + 0.5 * self.strip.length) % self.strip.length - 0.5 * self.strip.length
         values = hertz_strip(distance, z, 1.0, 1.0, self.case.poisson, friction=self.case.friction)
         return np.stack([values["sigma_xx"], values["sigma_yy"], values["sigma_zz"], values["tau_yz"]])
 
-    def hooke(self, strain: Array) -> Array:
+    def compute_hooke_stress(self, strain: Array) -> Array:
         """Stress of an elastic strain, tensors (4, ...)."""
         lame = 2 * self.shear_modulus * self.case.poisson / (1 - 2 * self.case.poisson)
         stress = 2 * self.shear_modulus * strain
         stress[:3] += lame * strain[:3].sum(axis=0)
         return np.asarray(stress)
 
-    def return_stress(self, total: Array, plastic: Array, elastic: Array) -> tuple[Array, Array, Array]:
+    def return_stress(self, total_strain: Array, plastic: Array, elastic: Array) -> tuple[Array, Array, Array]:
         """Residual stress, plastic strain and tangent for total strains, from the previous plastic strain.
 
         The tangent is (4, 4, point) with the strain 2 yz; `total` and `plastic` are tensors (4, point).
         """
         shear, hardening = self.shear_modulus, 2 / 3 * YOUNG * self.case.kinematic_hardening
-        stress = self.hooke(total - plastic) + elastic
+        stress = self.compute_hooke_stress(total_strain - plastic) + elastic
         relative_stress = stress - hardening * plastic
         relative_stress[:3] -= relative_stress[:3].mean(axis=0)
         norm = np.sqrt((COMPONENT_WEIGHTS * relative_stress**2).sum(axis=0))
@@ -175,9 +175,9 @@ class PlasticStrip:
         bulk = YOUNG / (3 * (1 - 2 * self.case.poisson))
         volumetric_stiffness = np.zeros((4, 4))
         volumetric_stiffness[:3, :3] = bulk
-        outer = normal[:, None] * normal[None]
+        normal_product = normal[:, None] * normal[None]
         tangent = volumetric_stiffness[..., None] + 2 * shear * (
-            factors * deviatoric_projection[..., None] - rotation * outer
+            factors * deviatoric_projection[..., None] - rotation * normal_product
         )
         return stress - elastic - 2 * shear * multiplier * normal, new_plastic, tangent
 
@@ -206,10 +206,10 @@ class PlasticStrip:
         previous_residual = np.inf
         for _ in range(100):
             nodal_displacement = np.append(displacement, 0.0)[self.unknowns]  # the bottom is held
-            total = np.einsum("aiep,ae->iep", self.strains, nodal_displacement)
-            total[3] *= 0.5
-            flat = (array.reshape(4, -1) for array in (total, plastic, elastic))
-            stress, new_plastic, tangent = self.return_stress(*flat)
+            total_strain = np.einsum("aiep,ae->iep", self.strains, nodal_displacement)
+            total_strain[3] *= 0.5
+            flat_arrays = (array.reshape(4, -1) for array in (total_strain, plastic, elastic))
+            stress, new_plastic, tangent = self.return_stress(*flat_arrays)
             out_of_balance = self.force(stress.reshape(shape))
             residual = np.abs(out_of_balance).max()
             if residual <= tolerance:
@@ -228,7 +228,7 @@ class PlasticStrip:
         elements, points = self.order
         return np.asarray(field[..., elements, points])
 
-    def roll(self) -> tuple[Array, Array, Array]:
+    def roll_over(self) -> tuple[Array, Array, Array]:
         """Roll all passes.
 
         Returns
@@ -243,7 +243,7 @@ class PlasticStrip:
         plastic = np.zeros((4, *self.basis.dx.shape))
         displacement = np.zeros(self.unknowns.max() + 1)
         steps_per_pass = round(self.strip.length / self.strip.step)
-        elastic_stresses = [self.elastic_stress(index * self.strip.step) for index in range(steps_per_pass)]
+        elastic_stresses = [self.compute_elastic_stress(index * self.strip.step) for index in range(steps_per_pass)]
         for fraction in (0.25, 0.5, 0.75):
             displacement, plastic, _ = self.increment(displacement, plastic, fraction * elastic_stresses[0])
         pass_strains = []

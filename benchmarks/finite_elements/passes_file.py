@@ -31,14 +31,14 @@ NAMES = ("sigma_xx", "sigma_yy", "plastic_strain_yy_young", "plastic_strain_yz_y
 
 def solve_reference(case: PassesCase, strip: Strip) -> xr.Dataset:
     """Passes on one mesh: means over the heights of its fine elements."""
-    strains, stresses, _ = PlasticStrip(case, strip).roll()
+    strains, stresses, _ = PlasticStrip(case, strip).roll_over()
     rows = round(strip.fine / strip.height)
 
-    def average(field: np.ndarray) -> np.ndarray:
+    def average_columns(field: np.ndarray) -> np.ndarray:
         return np.asarray(0.5 * (field[..., 0 : 2 * rows : 2] + field[..., 1 : 2 * rows : 2]))
 
-    stress = dict(zip(TENSOR_COMPONENTS, average(stresses), strict=True))
-    strain = dict(zip(TENSOR_COMPONENTS, np.moveaxis(average(YOUNG * strains), 1, 0), strict=True))
+    stress = dict(zip(TENSOR_COMPONENTS, average_columns(stresses), strict=True))
+    strain = dict(zip(TENSOR_COMPONENTS, np.moveaxis(average_columns(YOUNG * strains), 1, 0), strict=True))
     dataset = xr.Dataset(
         {f"sigma_{component}": ("z", stress[component], {"units": "p0"}) for component in ("xx", "yy")}
         | {
@@ -53,10 +53,10 @@ def solve_reference(case: PassesCase, strip: Strip) -> xr.Dataset:
     return dataset
 
 
-def max_difference(coarse: xr.Dataset, fine: xr.Dataset, name: str) -> float:
+def compute_max_difference(coarse_result: xr.Dataset, fine: xr.Dataset, name: str) -> float:
     """Largest difference of two solutions in means over the coarser heights."""
-    factor = fine.sizes["z"] // coarse.sizes["z"]
-    return float(np.abs(fine[name].coarsen(z=factor).mean().values - coarse[name].values).max())
+    factor = fine.sizes["z"] // coarse_result.sizes["z"]
+    return float(np.abs(fine[name].coarsen(z=factor).mean().values - coarse_result[name].values).max())
 
 
 def write(path: Path) -> None:
@@ -80,12 +80,16 @@ def append_reference(path: Path, name: str) -> None:
     start, case = time.perf_counter(), PASSES_CASES[name]
     strip = replace(PRODUCTION, step=LONGER_STEPS.get(name, PRODUCTION.step))
     lower = replace(strip, step=4 * strip.step)
-    reference, coarse = solve_reference(case, strip), solve_reference(case, lower)
-    estimates = {"step": {quantity: max_difference(coarse, reference, quantity) / 3 for quantity in NAMES}}
+    fine_result, coarse_result = solve_reference(case, strip), solve_reference(case, lower)
+    estimates = {
+        "step": {quantity: compute_max_difference(coarse_result, fine_result, quantity) / 3 for quantity in NAMES}
+    }
     for variant, (changes, fraction) in COARSER_VARIANTS.items():
-        coarser = solve_reference(case, replace(lower, **changes))
-        estimates[variant] = {quantity: fraction * max_difference(coarser, coarse, quantity) for quantity in NAMES}
-    reference.attrs = {
+        coarser_result = solve_reference(case, replace(lower, **changes))
+        estimates[variant] = {
+            quantity: fraction * compute_max_difference(coarser_result, coarse_result, quantity) for quantity in NAMES
+        }
+    fine_result.attrs = {
         "shear_yield_stress": case.shear_yield_stress,
         "friction": case.friction,
         "kinematic_hardening": case.kinematic_hardening,
@@ -93,11 +97,14 @@ def append_reference(path: Path, name: str) -> None:
         "step": strip.step,
     }
     for quantity in NAMES:
-        reference[quantity].attrs |= {f"change_{variant}": changes[quantity] for variant, changes in estimates.items()}
-        reference[quantity].attrs["error_estimate"] = sum(changes[quantity] for changes in estimates.values())
-    append_case(path, name, reference)
+        fine_result[quantity].attrs |= {
+            f"change_{variant}": changes[quantity] for variant, changes in estimates.items()
+        }
+        fine_result[quantity].attrs["error_estimate"] = sum(changes[quantity] for changes in estimates.values())
+    append_case(path, name, fine_result)
+    maxima = {quantity: float(abs(fine_result[quantity]).max()) for quantity in NAMES}
     sizes = {
-        quantity: f"{reference[quantity].attrs['error_estimate']:.1e} of {float(abs(reference[quantity]).max()):.1e}"
-        for quantity in NAMES
+        quantity: f"{fine_result[quantity].attrs['error_estimate']:.1e} of {maximum:.1e}"
+        for quantity, maximum in maxima.items()
     }
     print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimates: {sizes}", flush=True)

@@ -53,12 +53,12 @@ class ColumnFlexibility:
 def compute_flexibility(length: float, columns: int, poisson: float, resolution: Resolution) -> ColumnFlexibility:
     """Solve for every wavenumber on an even number of columns; the body is cut where a panel's load has decayed."""
     edges = np.linspace(0.0, length, columns + 1)
-    nodes_x = resolution.mesh_x(length)
+    nodes_x = resolution.make_mesh_x(length)
     nodes_x = nodes_x[nodes_x < 0.9 * edges[1]]
     x = Line(edges=np.unique(np.concatenate([edges, nodes_x, length - nodes_x])), order=resolution.order)
     step, half_columns = edges[1], columns // 2
 
-    def mirrored_columns(start: float, mirror_sign: float) -> Array:
+    def mirror_columns(start: float, mirror_sign: float) -> Array:
         """Force 1 on a column, and 1 or -1 on its mirror image."""
         unit_load, mirrored_load = (
             x.load(lambda x, column_start=column_start: 1.0 * (x > column_start) * (x < column_start + step))
@@ -66,8 +66,8 @@ def compute_flexibility(length: float, columns: int, poisson: float, resolution:
         )
         return unit_load + mirror_sign * mirrored_load
 
-    even, odd = (np.array([mirrored_columns(edges[i], sign) for i in range(half_columns)]) for sign in (1.0, -1.0))
-    depth, gauss_nodes = resolution.mesh_z(), legendre.leggauss(resolution.nodes)[0]
+    even, odd = (np.array([mirror_columns(edges[i], sign) for i in range(half_columns)]) for sign in (1.0, -1.0))
+    depth, gauss_nodes = resolution.make_mesh_z(), legendre.leggauss(resolution.nodes)[0]
     flexibilities: dict[str, list[Array]] = {"z": [], "x": [], "y": [], "cross": []}
     wavenumbers = []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
@@ -135,7 +135,7 @@ class RollingSolution:
     change: float
 
 
-def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
+def _make_blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
     """Matrix between cells (column-major) from the offsets of strips; an odd matrix changes sign for negative
     offsets."""
     offset = np.arange(count)[:, None] - np.arange(count)
@@ -146,7 +146,7 @@ def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
     return blocks.transpose(2, 0, 3, 1).reshape(columns * count, columns * count)
 
 
-def roll(
+def solve_rolling(
     flexibility: ColumnFlexibility,
     strips: int,
     window: float,
@@ -165,16 +165,16 @@ def roll(
         name: integrate_wavenumbers(flexibility, name, width, strips) / (1 - flexibility.poisson)
         for name in ("z", "x", "y")
     }
-    normal = 2 * _blocks(flexibilities["z"], strips)
+    normal = 2 * _make_blocks(flexibilities["z"], strips)
     y = (np.arange(strips) + 0.5) * width - window
     areas = np.full(half_columns * strips, 2 * width * flexibility.edges[1])
     pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half_columns), areas, load)
     cross_flexibility = integrate_wavenumbers(flexibility, "cross", width, strips) / (1 - flexibility.poisson)
-    matrix_y = _blocks(flexibilities["y"], strips)
+    matrix_y = _make_blocks(flexibilities["y"], strips)
     # A constant between all tractions along y displaces the whole body and makes the program convex.
     matrix_y = matrix_y - 1.01 * min(float(np.linalg.eigvalsh(matrix_y + matrix_y.T)[0]) / 2, 0.0) / areas.size
-    cross_blocks = _blocks(cross_flexibility, strips, odd=True)
-    matrix = np.block([[_blocks(flexibilities["x"], strips), cross_blocks], [cross_blocks.T, matrix_y]])
+    cross_blocks = _make_blocks(cross_flexibility, strips, odd=True)
+    matrix = np.block([[_make_blocks(flexibilities["x"], strips), cross_blocks], [cross_blocks.T, matrix_y]])
     matrix = 0.5 * (matrix + matrix.T)
     loaded_cells = np.flatnonzero(pressure > 0)
     count, unknown = loaded_cells.size, np.concatenate([loaded_cells, areas.size + loaded_cells])

@@ -19,7 +19,7 @@ OFFSETS = (0.2, 0.7), (0.25, 0.75)
 """Points per rectangle, over its sides: each triangle contains one at least, and its sides contain none."""
 
 
-def point_positions(edges: Array, axis: int) -> Array:
+def list_point_positions(edges: Array, axis: int) -> Array:
     """Positions of the points along x (0) or z (1)."""
     offsets = np.array(OFFSETS[axis])
     return (edges[:-1, None] + np.diff(edges)[:, None] * offsets).ravel()
@@ -71,7 +71,7 @@ class Elements:
 
     def stress_matrices(self) -> list[sparse.csr_array]:
         """Matrices from the unknowns to the stresses xx, zz, xz at all points (x first)."""
-        x, z = point_positions(self.x, 0), point_positions(self.z, 1)
+        x, z = list_point_positions(self.x, 0), list_point_positions(self.z, 1)
         matrices = [sparse.lil_array((x.size * z.size, self.count)) for _ in range(3)]
         for i, point_x in enumerate(x):
             for j, point_z in enumerate(z):
@@ -86,7 +86,7 @@ class Elements:
         return [matrix.tocsr() for matrix in matrices]
 
 
-def min_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
+def minimize_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     """Least k for histories (point, instant, 6) at the points of a mesh with edges `x` and `z`."""
     elements = Elements(x, z)
     equations, (xx, zz, xz) = elements.equilibrium(), elements.stress_matrices()
@@ -104,15 +104,15 @@ def min_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     point = rows // instants
 
     # Unknowns: the bound on von Mises' stress, the free stress along y at each point, the stresses.
-    def cone_rows(cone_row: int, matrix: sparse.sparray) -> sparse.csr_array:
+    def make_cone_rows(cone_row: int, matrix: sparse.sparray) -> sparse.csr_array:
         selection = sparse.csr_array(
             (np.full(rows.size, -1.0), (5 * rows + cone_row, rows)), shape=(5 * rows.size, rows.size)
         )
         return selection @ matrix
 
-    bound = cone_rows(0, sparse.csr_array(np.ones((rows.size, 1))))
-    free_stress = cone_rows(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
-    stress = cone_rows(2, 0.5 * root_3 * (xx - zz)[point]) + cone_rows(3, root_3 * xz[point])
+    bound = make_cone_rows(0, sparse.csr_array(np.ones((rows.size, 1))))
+    free_stress = make_cone_rows(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
+    stress = make_cone_rows(2, 0.5 * root_3 * (xx - zz)[point]) + make_cone_rows(3, root_3 * xz[point])
     constraints = sparse.hstack([sparse.csr_array((equations.shape[0], 1 + count)), equations])
     matrix = sparse.vstack([constraints, sparse.hstack([bound, free_stress, stress])], format="csc")
     right_side = np.concatenate([np.zeros(equations.shape[0]), np.stack(blocks, axis=-1).ravel()])

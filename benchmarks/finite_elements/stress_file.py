@@ -18,7 +18,14 @@ import xarray as xr
 
 from benchmarks.finite_elements.harmonics import COMPONENTS
 from benchmarks.finite_elements.reference_files import append_case, create_file
-from benchmarks.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
+from benchmarks.finite_elements.superpose import (
+    PANELS,
+    Harmonics,
+    Resolution,
+    harmonics,
+    superpose_displacement,
+    superpose_stresses,
+)
 from contactstudy.verification.problems import LOAD_CASES, LoadCase, quartic
 
 Z = (0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.25, 2.0, 3.0, 5.0)
@@ -39,7 +46,7 @@ VARIANTS = {  # name: (variant, reference)
 }
 
 
-def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
+def make_coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
     """Points of a case; with friction on both sides of y = 0."""
     y = Y if case.friction == 0 else tuple(-value for value in Y[:0:-1]) + Y
     return {"x": X[case.length], "y": y, "z": Z}
@@ -47,10 +54,10 @@ def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
 
 def evaluate(case: LoadCase, harmonics_of_body: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
     """Stresses, and the displacement where defined, from the harmonics of a body."""
-    positions = coordinates(case)
+    positions = make_coordinates(case)
     normal = shapes.index((case.g, "z"))
     tangential = shapes.index((case.g, "y")) if case.friction else None
-    fields = stresses(harmonics_of_body, normal, tangential, case.friction, positions["y"])
+    fields = superpose_stresses(harmonics_of_body, normal, tangential, case.friction, positions["y"])
     units = {"units": "p0"}
     dataset = xr.Dataset(
         {n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in positions.items()}
@@ -58,8 +65,10 @@ def evaluate(case: LoadCase, harmonics_of_body: Harmonics, shapes: list[tuple[ob
     for name in positions:
         dataset[name].attrs["units"] = "a"
     if case.symmetric:
-        reference = positions["x"].index(case.length / 2)
-        displacement_z = displacement(harmonics_of_body, case, normal, tangential, positions["y"], reference=reference)
+        reference_index = positions["x"].index(case.length / 2)
+        displacement_z = superpose_displacement(
+            harmonics_of_body, case, normal, tangential, positions["y"], reference=reference_index
+        )
         attrs = {
             "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
             "units": "p0 a",
@@ -70,7 +79,7 @@ def evaluate(case: LoadCase, harmonics_of_body: Harmonics, shapes: list[tuple[ob
     return dataset
 
 
-def max_changes(coarse: xr.Dataset, fine: xr.Dataset) -> tuple[float, float, float]:
+def compute_max_changes(coarse: xr.Dataset, fine: xr.Dataset) -> tuple[float, float, float]:
     """Largest and median change of the stresses, largest change of the displacement."""
     stress = np.array([np.abs(coarse[n] - fine[n]) for n in COMPONENTS])
     name = "displacement_z_young"
@@ -103,7 +112,7 @@ def write(path: Path) -> None:
             results[resolution] = {n: evaluate(c, harmonics_of_body, list(shapes)) for n, c in cases.items()}
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():
-            estimates = {v: max_changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
+            estimates = {v: compute_max_changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
             dataset = results[PRODUCTION][name]
             dataset.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
             for variant, (largest, median, _) in estimates.items():
@@ -112,7 +121,7 @@ def write(path: Path) -> None:
             dataset.attrs["error_estimate_median"] = sum(c[1] for c in estimates.values())
             if "displacement_z_young" in dataset:
                 dataset["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
-            dataset = dataset.assign_coords({k: list(v) for k, v in coordinates(case).items()})
+            dataset = dataset.assign_coords({k: list(v) for k, v in make_coordinates(case).items()})
             append_case(path, name, dataset)
             print(
                 name,

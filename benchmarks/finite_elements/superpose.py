@@ -43,7 +43,7 @@ class Resolution:
     nodes: int = 6
     panels: tuple[float, ...] = PANELS
 
-    def mesh_x(self, length: float) -> Array:
+    def make_mesh_x(self, length: float) -> Array:
         """Edges graded to both ends; between, the multiples of 1/2, where loads begin and end."""
         step = min(0.5, 0.25 * length)
         half_nodes = [0.0]
@@ -53,7 +53,7 @@ class Resolution:
         inner_nodes = np.linspace(step, length - step, round(length / step) - 1)
         return np.concatenate([graded_edges[:-1], inner_nodes, (length - graded_edges[::-1])[1:]])
 
-    def mesh_z(self) -> Array:
+    def make_mesh_z(self) -> Array:
         edges = [0.0, self.smallest]
         while edges[-1] < self.depth:
             edges.append(edges[-1] * self.growth)
@@ -80,8 +80,8 @@ def harmonics(
 ) -> Harmonics:
     """Solve for every wavenumber; a shape is `g` and the direction of the load."""
     body = HarmonicBody(
-        Line(edges=resolution.mesh_x(length), order=resolution.order),
-        Line(edges=resolution.mesh_z(), order=resolution.order),
+        Line(edges=resolution.make_mesh_x(length), order=resolution.order),
+        Line(edges=resolution.make_mesh_z(), order=resolution.order),
         poisson,
     )
     node = legendre.leggauss(resolution.nodes)[0]
@@ -95,7 +95,9 @@ def harmonics(
     return Harmonics(resolution, wavenumbers, np.array(stress), np.array(surface))
 
 
-def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iterator[tuple[slice, Array, Array, Array]]:
+def _make_panels(
+    resolution: Resolution, transform: Callable[[Array], Array]
+) -> Iterator[tuple[slice, Array, Array, Array]]:
     """For each panel: its slice of the nodes, fine nodes, their weights times `h(k) / pi`, interpolation."""
     n = resolution.nodes
     inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
@@ -106,7 +108,7 @@ def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iter
         yield slice(i * n, (i + 1) * n), fine_nodes, weights, legendre.legvander(node, n - 1) @ inverse_legendre
 
 
-def stresses(
+def superpose_stresses(
     harmonics: Harmonics,
     normal: int,
     tangential: int | None,
@@ -118,7 +120,7 @@ def stresses(
     positions = np.asarray(y, dtype=float)
     total = np.zeros((len(COMPONENTS), positions.size, *harmonics.stress.shape[3:]))
     sine = np.array([name in ("tau_xy", "tau_yz") for name in COMPONENTS])
-    for panel, k, weight, interpolate in _panels(harmonics.resolution, transform):
+    for panel, k, weight, interpolate in _make_panels(harmonics.resolution, transform):
         cos, sin = ((np.cos, np.sin)[i](np.outer(positions, k)) * weight @ interpolate for i in (0, 1))
         for index, factor, even, odd in ((normal, 1.0, cos, sin), (tangential, friction, sin, -cos)):
             if index is None:
@@ -129,7 +131,7 @@ def stresses(
     return {name: field.transpose(1, 0, 2) for name, field in zip(COMPONENTS, total, strict=True)}
 
 
-def displacement(
+def superpose_displacement(
     harmonics: Harmonics,
     case: LoadCase,
     normal: int,
@@ -145,7 +147,7 @@ def displacement(
     """
     positions = np.asarray(y, dtype=float)
     total = np.zeros((positions.size, harmonics.surface.shape[2]))
-    for panel, k, weight, interpolate in _panels(harmonics.resolution, transform):
+    for panel, k, weight, interpolate in _make_panels(harmonics.resolution, transform):
         phases, node_k = np.outer(positions, k), harmonics.k[panel]
         surface = harmonics.surface[panel, normal]
         base = surface[:, reference]

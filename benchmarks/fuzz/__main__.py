@@ -13,7 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from random import Random
 
-from benchmarks.fuzz.outcome import outcome_of
+from benchmarks.fuzz.outcome import classify_outcome
 from benchmarks.fuzz.random_cases import draw_case
 from contactstudy import cache
 
@@ -38,7 +38,7 @@ def read_outcomes(path: Path) -> dict[int, dict[str, object]]:
     return outcomes
 
 
-def summary(outcomes: dict[int, dict[str, object]]) -> str:
+def format_summary(outcomes: dict[int, dict[str, object]]) -> str:
     """Counts, and every violation by its seed."""
     kind_counts = Counter(outcome["kind"] for outcome in outcomes.values())
     refusal_counts = Counter(outcome["message"] for outcome in outcomes.values() if outcome["kind"] == "refused")
@@ -61,20 +61,20 @@ def main() -> int:
     options = parser.parse_args()
     if options.seed is not None:
         print(draw_case(Random(options.seed)))
-        print(outcome_of(Random(options.seed)))
+        print(classify_outcome(Random(options.seed)))
         return 0
     cache.limit(CACHE_BYTES)
     outcomes = read_outcomes(options.out) if options.out else {}
     for seed in range(options.first, options.first + options.cases):
         if seed in outcomes:
             continue
-        outcomes[seed] = outcome = {"seed": seed, **asdict(outcome_of(Random(seed)))}
+        outcomes[seed] = outcome = {"seed": seed, **asdict(classify_outcome(Random(seed)))}
         if options.out:
             with options.out.open("a") as file:
                 file.write(json.dumps(outcome) + "\n")
         if outcome["kind"] == "violation":
             print(f"seed {seed}: {outcome['message']}", flush=True)
-    print(summary(outcomes))
+    print(format_summary(outcomes))
     return int(any(outcome["kind"] == "violation" for outcome in outcomes.values()))
 
 

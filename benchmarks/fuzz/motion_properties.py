@@ -20,26 +20,26 @@ SAME_TRACTION = 0.02
 def law_of_friction(solution: SolvedCase) -> bool:
     """Tractions are below their bound; slip is along the traction, and zero in sticking cells."""
     result, friction = solution.result, solution.random_case.case.friction
-    q, slip = (np.stack([result[f"{name}_{axis}"].values for axis in "xy"]) for name in ("traction", "slip"))
+    tractions, slip = (np.stack([result[f"{name}_{axis}"].values for axis in "xy"]) for name in ("traction", "slip"))
     in_contact, is_sticking = result["pressure"].values > 0, result["stick"].values.astype(bool)
     bound, max_bound = friction * result["pressure"].values, friction * solution.peak
-    bound_excess = float((np.hypot(*q) - bound).max()) / max_bound
+    bound_excess = float((np.hypot(*tractions) - bound).max()) / max_bound
     require(bound_excess <= 1e-9, f"a traction {bound_excess:.3g} above its bound")
-    require(not q[:, ~in_contact].any(), "traction without pressure")
+    require(not tractions[:, ~in_contact].any(), "traction without pressure")
     scale = max(float(np.hypot(*slip)[in_contact].max()), np.finfo(float).tiny)
     if isinstance(solution.random_case.case.motion, Rolling) and solution.random_case.case.motion.model == "fastsim":
         return True
-    slip_scale = _slip_of_full_sliding(solution)
+    slip_scale = _compute_slip_of_full_sliding(solution)
     require(
         float(np.hypot(*slip)[in_contact & is_sticking].max(initial=0.0)) <= MAX_STICKING_SLIP * max(scale, slip_scale),
         "a cell sticks and slips",
     )
     is_slipping = in_contact & ~is_sticking
-    slip_work = (q * slip).sum(axis=0)[is_slipping] / max_bound
+    slip_work = (tractions * slip).sum(axis=0)[is_slipping] / max_bound
     require(
         float(-slip_work.min(initial=0.0)) <= MAX_STICKING_SLIP * max(scale, slip_scale), "slip against its traction"
     )
-    bound_deficit = np.abs(np.hypot(*q) - bound)[is_slipping].max(initial=0.0) / max_bound
+    bound_deficit = np.abs(np.hypot(*tractions) - bound)[is_slipping].max(initial=0.0) / max_bound
     require(float(bound_deficit) <= 1e-6, f"a cell slips at {bound_deficit:.3g} below its bound")
     return True
 
@@ -48,7 +48,7 @@ MAX_STICKING_SLIP = 1e-4
 """Largest slip of a sticking cell over the largest slip, or over the slip of full sliding."""
 
 
-def _slip_of_full_sliding(solution: SolvedCase) -> float:
+def _compute_slip_of_full_sliding(solution: SolvedCase) -> float:
     """Displacement (rolling: creepage) at which friction reaches full sliding, by order of magnitude."""
     case = solution.random_case.case
     ratio = case.friction * case.hertz_half_width / case.roller.radius
@@ -58,20 +58,20 @@ def _slip_of_full_sliding(solution: SolvedCase) -> float:
 def law_on_the_top(solution: SolvedCase) -> bool:
     """Between the cells' centres, tractions of rolling on the top are below friction times the pressure of the top."""
     case, grid = solution.random_case.case, solution.grid
-    inner = ndimage.binary_erosion(
+    is_inner_cell = ndimage.binary_erosion(
         solution.result["pressure"].values > 0, iterations=EXCLUDED_RIM_CELLS, border_value=1
     )
-    columns, rows = (np.flatnonzero(inner.any(axis=axis)) for axis in (1, 0))
-    if not isinstance(case.motion, Rolling) or not inner.any():
+    columns, rows = (np.flatnonzero(is_inner_cell.any(axis=axis)) for axis in (1, 0))
+    if not isinstance(case.motion, Rolling) or not is_inner_cell.any():
         return False
     if getattr(case.body, "model", "") == "mirror-factor":
         return False  # its mirrors do not end where the body does
     y = grid.y[rows[0]] + grid.dy * np.linspace(0.0, rows.size - 1, 8 * rows.size - 7)
-    top = run(solution.random_case, x=grid.x[columns].tolist(), y=y.tolist(), z=[0.0])
+    surface_stresses = run(solution.random_case, x=grid.x[columns].tolist(), y=y.tolist(), z=[0.0])
     row_of_point = np.clip(np.round((y - grid.y[0]) / grid.dy).astype(int), rows[0], rows[-1])
-    bound = -case.friction * top["sigma_zz"].values[..., 0]
-    traction = np.hypot(*(top[f"tau_{axis}z"].values[..., 0] for axis in "xy"))
-    is_inner = inner[np.ix_(columns, row_of_point)]
+    bound = -case.friction * surface_stresses["sigma_zz"].values[..., 0]
+    traction = np.hypot(*(surface_stresses[f"tau_{axis}z"].values[..., 0] for axis in "xy"))
+    is_inner = is_inner_cell[np.ix_(columns, row_of_point)]
     max_ratio = float((traction[is_inner] / bound[is_inner]).max())
     require(max_ratio <= MAX_TOP_RATIO, f"a traction of {max_ratio:.4g} times its bound on the top")
     return True
@@ -125,7 +125,7 @@ def friction_dissipates_work(solution: SolvedCase) -> bool:
     scale = (
         solution.random_case.case.friction
         * solution.random_case.case.normal_load
-        * max(float(slip.max()), _slip_of_full_sliding(solution))
+        * max(float(slip.max()), _compute_slip_of_full_sliding(solution))
     )
     lower_bound = -1e-3 if loaded_row_count > 3 else -0.1
     require(lower_bound * scale <= work <= 1.5 * scale, f"work of {work / scale:.3g} of the largest")
@@ -150,7 +150,7 @@ def mirrored_about_mid_length(solution: SolvedCase) -> bool:
     extent = np.isfinite(solution.random_case.case.body.extent)
     if extent[0] != extent[1]:
         return False
-    mirrored_solution = _solve_variant(solution.cells.from_other_end())
+    mirrored_solution = _solve_variant(solution.cells.reverse_case())
     if mirrored_solution is None:
         return False
     for axis, sign in (("x", -1), ("y", 1)):

@@ -15,7 +15,7 @@ UNITS = {"force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1), "spin": (-1, 
 """Powers of length and modulus in the unit of each quantity."""
 
 
-def random_motion(rng: Random, case: Case, friction: float) -> Motion:
+def draw_motion(rng: Random, case: Case, friction: float) -> Motion:
     """Random shift or rolling, from little slip to full sliding."""
     half_width, radius, full_sliding = case.hertz_half_width, case.roller.radius, friction * case.normal_load
     if rng.random() < 0.35:
@@ -57,18 +57,18 @@ def _draw_move_or_force(
 def mirror_motion(motion: Motion) -> Motion:
     """The motion mirrored about mid-length."""
     return replace(
-        motion, **{name: -value for name, value in _prescribed_values(motion).items() if name in SIGNED_QUANTITIES}
+        motion, **{name: -value for name, value in _draw_prescribed_values(motion).items() if name in SIGNED_QUANTITIES}
     )
 
 
 def scale_motion(motion: Motion, length: float, modulus: float) -> Motion:
     """The motion with every length and every modulus multiplied."""
-    values = {name: value for name, value in _prescribed_values(motion).items() if name in UNITS}
+    values = {name: value for name, value in _draw_prescribed_values(motion).items() if name in UNITS}
     return replace(
         motion, **{name: value * length ** UNITS[name][0] * modulus ** UNITS[name][1] for name, value in values.items()}
     )
 
 
-def _prescribed_values(motion: Motion) -> dict[str, float]:
+def _draw_prescribed_values(motion: Motion) -> dict[str, float]:
     """Prescribed values by name."""
     return {name: value for name, value in vars(motion).items() if isinstance(value, float)}

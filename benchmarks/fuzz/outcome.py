@@ -40,7 +40,7 @@ MAX_SECONDS = 120.0
 """Processor time above which a case is a violation."""
 
 
-def outcome_of(rng: Random, *, refined: bool | None = None) -> Outcome:
+def classify_outcome(rng: Random, *, refined: bool | None = None) -> Outcome:
     """Draw a case, solve the case and check its properties; errors become outcomes.
 
     `refined` decides whether cells are refined or given; None: random.

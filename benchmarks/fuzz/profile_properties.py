@@ -54,10 +54,10 @@ MIN_CORNER_JUMP = 1e-5
 """Least jump of the slope that is a corner, above the package's bound for rounding."""
 
 
-def convex_bends(profile: Profile) -> list[tuple[float, float]]:
+def find_convex_bends(profile: Profile) -> list[tuple[float, float]]:
     """Distances from mid-length, and jumps, of the convex bends of a user's profile, alone or in a sum."""
     if isinstance(profile, Sum):
-        return [bend for term in profile.terms for bend in convex_bends(term)]
+        return [bend for term in profile.terms for bend in find_convex_bends(term)]
     if not isinstance(profile, Polyline):
         return []
     jumps = np.diff(np.diff(profile.drops) / np.diff(profile.positions))
@@ -69,7 +69,7 @@ def convex_bends(profile: Profile) -> list[tuple[float, float]]:
 def pressed_corner_is_unbounded(solution: SolvedCase) -> bool:
     """The corner of refined cells is the strongest convex bend of a user's profile that is pressed on both sides."""
     case = solution.random_case.case
-    bends = convex_bends(case.roller.profile)
+    bends = find_convex_bends(case.roller.profile)
     if solution.moves or not bends or "Measured" in repr(case.roller.profile):
         return False
     try:

@@ -17,7 +17,7 @@ import xarray as xr
 from scipy import ndimage
 
 from benchmarks.fuzz.profile_properties import drop_determines_the_peak, pressed_corner_is_unbounded
-from benchmarks.fuzz.shapes import random_magnitude
+from benchmarks.fuzz.shapes import draw_magnitude
 from benchmarks.fuzz.solutions import (
     SAME_PRESSURE,
     TOLERANCE,
@@ -137,7 +137,7 @@ def mirrored_about_mid_length(solution: SolvedCase) -> bool:
     """A case mirrored about mid-length has the mirrored pressure."""
     if not isinstance(solution.random_case.case.body, (FiniteLengthSpace, HalfSpace)):
         return False
-    mirrored_pressure = solve_again(solution.cells.from_other_end())
+    mirrored_pressure = solve_again(solution.cells.reverse_case())
     if mirrored_pressure is None:
         return False
     pressure = solution.result["pressure"].values
@@ -193,12 +193,13 @@ def superposition(solution: SolvedCase) -> bool:
     random_load = pressure.copy(data=peak * random_factors)
     load_fields = pressure, random_load, pressure + 0.5 * random_load
     friction = rng.uniform(-1.0, 1.0)
-    points = inner_points(solution)
+    points = find_inner_points(solution)
     options = {"inside_cells": rng.choice([pressure, "uniform"]), **points}
     fields = [stack_components(stress_field(case.body, load, friction=friction, **options)) for load in load_fields]
     require_close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, 1e-9)
     frictionless_stress, sliding_stress = (
-        stack_components(stress_field(case.body, pressure, friction=f, **options)) for f in (0.0, 1.0)
+        stack_components(stress_field(case.body, pressure, friction=friction_coefficient, **options))
+        for friction_coefficient in (0.0, 1.0)
     )
     require_close(
         "stresses with friction",
@@ -247,14 +248,14 @@ MAX_WORK_DIFFERENCE = 1e-2
 """Values at centres replace means over cells: exact on uniform cells, approximate on others."""
 
 
-def inner_points(solution: SolvedCase) -> dict[str, list[float]]:
+def find_inner_points(solution: SolvedCase) -> dict[str, list[float]]:
     """Random positions inside the body."""
-    grid, rng, a = solution.grid, solution.rng, solution.random_case.case.hertz_half_width
+    grid, rng, half_width = solution.grid, solution.rng, solution.random_case.case.hertz_half_width
     low, high = grid.x_range
     return {
         "x": [low + rng.uniform(0.05, 0.95) * (high - low) for _ in range(2)],
-        "y": [rng.uniform(-1.5, 1.5) * a],
-        "z": [rng.uniform(0.05, 3.0) * a, 0.0],
+        "y": [rng.uniform(-1.5, 1.5) * half_width],
+        "z": [rng.uniform(0.05, 3.0) * half_width, 0.0],
     }
 
 
@@ -266,17 +267,17 @@ def stack_components(field: xr.Dataset) -> np.ndarray:
 def equilibrium(solution: SolvedCase) -> bool:
     """The divergence of the stresses inside vanishes, by central differences."""
     case, grid, rng = solution.random_case.case, solution.grid, solution.rng
-    a, peak = case.hertz_half_width, solution.peak
+    half_width, peak = case.hertz_half_width, solution.peak
     low, high = grid.x_range
     # At a depth of at least one cell, and away from the ends by more than a step.
-    length = max(a, float(grid.widths.max()), grid.dy)
+    length = max(half_width, float(grid.widths.max()), grid.dy)
     depth = rng.uniform(1.0, 2.0) * length
     step = 0.02 * min(length, high - low)
     # At these depths the representation of the load changes, and on few cells the stresses by up to 1e-3 of the peak.
     for transition_depth in (MAX_REFINED_DEPTH * grid.dy, MAX_REFINED_DEPTH * float(grid.widths.max())):
         if abs(depth - transition_depth) < 2 * step:
             depth = transition_depth + 2 * step
-    position = [low + rng.uniform(0.1, 0.9) * (high - low), rng.uniform(-1.0, 1.0) * a, depth]
+    position = [low + rng.uniform(0.1, 0.9) * (high - low), rng.uniform(-1.0, 1.0) * half_width, depth]
     axes = {axis: [centre - step, centre, centre + step] for axis, centre in zip("xyz", position, strict=True)}
     pressure = solution.result["pressure"]
     field = stack_components(stress_field(case.body, pressure, friction=case.friction, **axes, inside_cells=pressure))
@@ -371,14 +372,16 @@ def free_ends(solution: SolvedCase) -> bool:
     On few columns in a thin body `end_traction_residual` must contain a larger traction.
     """
     case, grid, rng = solution.random_case.case, solution.grid, solution.rng
-    ends = [end_x for end_x in case.body.extent if np.isfinite(end_x)]
-    if not ends or not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
+    end_positions = [end_x for end_x in case.body.extent if np.isfinite(end_x)]
+    if not end_positions or not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     size = max(grid.dy, float(grid.widths[[0, -1]].max()))
-    depths = [random_magnitude(rng, 0.25, 4.0) * size for _ in range(2)]
+    depths = [draw_magnitude(rng, 0.25, 4.0) * size for _ in range(2)]
     y = [rng.uniform(*grid.y_range) for _ in range(3)]
     pressure = solution.result["pressure"]
-    field = stress_field(case.body, pressure, friction=case.friction, x=ends, y=y, z=depths, inside_cells=pressure)
+    field = stress_field(
+        case.body, pressure, friction=case.friction, x=end_positions, y=y, z=depths, inside_cells=pressure
+    )
     end_traction = (
         max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solution.peak
     )
@@ -429,7 +432,7 @@ def largest_stress(solution: SolvedCase) -> bool:
     if not np.isfinite(upper_bound):
         return False
     is_loaded = result["pressure"].values > 0
-    inner = ndimage.binary_erosion(is_loaded, iterations=2, border_value=1)
+    is_inner = ndimage.binary_erosion(is_loaded, iterations=2, border_value=1)
     columns, rows = (
         np.sort(rng.sample(list(indices), min(len(indices), 25)))
         for indices in (np.flatnonzero(is_loaded.any(axis=1)), np.flatnonzero(is_loaded.any(axis=0)))
@@ -441,7 +444,7 @@ def largest_stress(solution: SolvedCase) -> bool:
     field = stress_field(case.body, pressure, friction=case.friction, **positions, inside_cells=pressure)[
         "von_mises"
     ].values
-    field[..., 0][~inner[np.ix_(columns, rows)]] = 0.0
+    field[..., 0][~is_inner[np.ix_(columns, rows)]] = 0.0
     require(field.max() <= upper_bound, f"a von Mises stress of {field.max() / upper_bound:.4g} of the stated largest")
     if float(result["peak_von_mises_z"]) > 0:
         point = {axis: [float(result[f"peak_von_mises_{axis}"])] for axis in "xyz"}

@@ -7,8 +7,8 @@ from random import Random
 
 import numpy as np
 
-from benchmarks.fuzz.motions import mirror_motion, random_motion, scale_motion
-from benchmarks.fuzz.shapes import mirror_profile, random_magnitude, random_profile, stretch_profile
+from benchmarks.fuzz.motions import draw_motion, mirror_motion, scale_motion
+from benchmarks.fuzz.shapes import draw_magnitude, draw_profile, mirror_profile, stretch_profile
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, Roller
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import MODELS, Body
@@ -38,7 +38,7 @@ class RandomCase:
     grid: Grid | None
     accuracy: float = 0.05
 
-    def from_other_end(self) -> RandomCase:
+    def reverse_case(self) -> RandomCase:
         """Return the case mirrored about mid-length, for symmetric bodies."""
         case, grid = self.case, self.grid
         low, high = case.body.extent
@@ -57,7 +57,7 @@ class RandomCase:
         edges = (length - grid.x_edges)[::-1]
         if np.isfinite(high):
             edges[0], edges[-1] = 0.0, high
-        return replace(self, case=mirrored_case, grid=regrid(grid, edges, grid.y_range))
+        return replace(self, case=mirrored_case, grid=make_grid(grid, edges, grid.y_range))
 
     def scale(self, length: float, modulus: float) -> RandomCase:
         """Return the case with every length and every modulus multiplied: strains are unchanged."""
@@ -95,11 +95,11 @@ class RandomCase:
         if np.isfinite(high := scaled_case.body.extent[1]):
             edges[-1] = high
         return replace(
-            self, case=scaled_case, grid=regrid(grid, edges, (length * grid.y_range[0], length * grid.y_range[1]))
+            self, case=scaled_case, grid=make_grid(grid, edges, (length * grid.y_range[0], length * grid.y_range[1]))
         )
 
 
-def regrid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
+def make_grid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
     """Grid of the same number of cells on other edges, uniform if `grid` is uniform."""
     if grid.uniform:
         return Grid(
@@ -108,10 +108,10 @@ def regrid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
     return Grid.between(edges, y_range, grid.cells_y)
 
 
-def random_material(rng: Random) -> Material:
+def draw_material(rng: Random) -> Material:
     """From rubber to diamond; Poisson's ratio often at a limit."""
     poisson = rng.choice((0.3, 0.3, 0.0, 0.5, rng.uniform(-0.5, 0.5)))
-    return Material(rng.choice((210e9, random_magnitude(rng, 1e6, 1e12))), poisson)
+    return Material(rng.choice((210e9, draw_magnitude(rng, 1e6, 1e12))), poisson)
 
 
 def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
@@ -122,19 +122,19 @@ def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
     ContactStudyError
         If the drawn parameters contradict each other.
     """
-    material = random_material(rng)
-    radius = rng.choice((5e-3, random_magnitude(rng, 1e-7, 1.0)))
-    strain = random_magnitude(rng, 1e-4, 0.05)  # half-width over radius
+    material = draw_material(rng)
+    radius = rng.choice((5e-3, draw_magnitude(rng, 1e-7, 1.0)))
+    strain = draw_magnitude(rng, 1e-4, 0.05)  # half-width over radius
     half_width = strain * radius
-    length = half_width * random_magnitude(rng, 0.5, 12.0)
+    length = half_width * draw_magnitude(rng, 0.5, 12.0)
     roller = Roller(
         radius=radius,
         length=length,
-        profile=random_profile(rng, radius, length, 0.5 * half_width * strain),
-        material=rng.choice((None, None, None, material, random_material(rng))),
+        profile=draw_profile(rng, radius, length, 0.5 * half_width * strain),
+        material=rng.choice((None, None, None, material, draw_material(rng))),
         ends=rng.choice(("free", "free", "none")),
     )
-    body = _random_body(rng, material, length, half_width)
+    body = _draw_body(rng, material, length, half_width)
     pressure = 0.5 * strain * contact_modulus(material, roller.material)
     case = Case(
         body=body,
@@ -150,12 +150,12 @@ def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
     random_case = _add_cells(rng, case, refined)
     if rng.random() < MOVING_FRACTION:
         friction = abs(case.friction) or 0.1
-        moving_case = replace(case, friction=friction, motion=random_motion(rng, case, friction))
+        moving_case = replace(case, friction=friction, motion=draw_motion(rng, case, friction))
         random_case = replace(random_case, case=moving_case)
     return random_case
 
 
-def _random_body(rng: Random, material: Material, length: float, half_width: float) -> Body:
+def _draw_body(rng: Random, material: Material, length: float, half_width: float) -> Body:
     """A body longer than the roller, or about as long."""
     kind = rng.choice((FiniteLengthSpace, FiniteLengthSpace, FiniteLengthSpace, QuarterSpace, HalfSpace))
     if kind is HalfSpace:
@@ -207,10 +207,12 @@ def _add_cells(rng: Random, case: Case, refined: bool | None) -> RandomCase:
         if rng.random() < 0.1:
             cells_x = 2 * rng.randint(1, 4)
         return RandomCase(case, Grid(x_range=(x_start, x_stop), y_range=window, cells_x=cells_x, cells_y=cells_y))
-    return RandomCase(case, Grid.from_edges(_graded_edges(rng, x_start, x_stop, rng.randint(6, 30)), window, cells_y))
+    return RandomCase(
+        case, Grid.from_edges(_draw_graded_edges(rng, x_start, x_stop, rng.randint(6, 30)), window, cells_y)
+    )
 
 
-def _graded_edges(rng: Random, x_start: float, x_stop: float, cells: int) -> np.ndarray:
+def _draw_graded_edges(rng: Random, x_start: float, x_stop: float, cells: int) -> np.ndarray:
     """Edges whose steps vary by up to a factor of 1.8 from one to the next."""
     steps = np.exp(np.cumsum([rng.uniform(-0.55, 0.55) for _ in range(cells)]))
     edges = x_start + (x_stop - x_start) * np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])

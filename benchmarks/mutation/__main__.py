@@ -21,7 +21,7 @@ from typing import Any
 
 from benchmarks.mutation.equivalent import EQUIVALENT
 from benchmarks.mutation.forks import TESTS, Reached, Session, with_session
-from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants
+from benchmarks.mutation.mutants import PACKAGES, Mutant, list_mutants
 
 Notes = dict[str, Any]
 
@@ -96,13 +96,13 @@ class Trials:
     def try_mutant(self, mutant: Mutant) -> Notes:
         """Test a change and return the first failing test."""
         tests = self.tests(mutant)
-        failing_test = self.session.first_failure(tests, mutant)
+        failing_test = self.session.find_first_failure(tests, mutant)
         self.failure_counts[mutant.file][failing_test.split(" (")[0]] += 1
         print("noticed" if failing_test else "MISSED ", mutant.key, flush=True)
         return {"change": mutant.key, "by": failing_test, "tests": len(tests)}
 
 
-def summary(notes: dict[str, Notes]) -> str:
+def format_summary(notes: dict[str, Notes]) -> str:
     """Counts by package, and every change without a failing test."""
     lines = []
     for package in PACKAGES:
@@ -136,18 +136,18 @@ def main() -> None:
     def run_trials(session: Session) -> None:
         durations = read_notes(reached_path, "test")
         tests = [test for test in session.items if test not in durations]
-        share_work(lambda test: asdict(session.reached(test)), tests, reached_path, options.processes)
+        share_work(lambda test: asdict(session.find_reached_statements(test)), tests, reached_path, options.processes)
         trials = Trials(
             session, (Reached(**note) for note in read_notes(reached_path, "test").values()), options.seconds
         )
         notes = read_notes(tried_path, "change")
         trials.count_failures(notes)
         finished = {key for key, note in notes.items() if note["by"] or not options.again}
-        mutants = [mutant for mutant in all_mutants() if options.only in mutant.key]
+        mutants = [mutant for mutant in list_mutants() if options.only in mutant.key]
         Random(0).shuffle(mutants)
         remaining = [mutant for mutant in mutants[: options.sample] if mutant.key not in finished | set(EQUIVALENT)]
         share_work(trials.try_mutant, remaining, tried_path, options.processes)
-        print(summary(read_notes(tried_path, "change")))
+        print(format_summary(read_notes(tried_path, "change")))
 
     with_session(run_trials, options.tests)
 

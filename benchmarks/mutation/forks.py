@@ -80,16 +80,16 @@ class Session:
         functions = defaultdict(list)
         for function in gc.get_objects():
             if isinstance(function, FunctionType) and function.__code__.co_filename.startswith(CORE):
-                functions[_code_key(function.__code__)].append(function)
+                functions[_make_code_key(function.__code__)].append(function)
         self.functions = dict(functions)
         gc.freeze()  # a garbage collection in a fork would copy every imported object
 
-    def reached(self, test: str) -> Reached:
+    def find_reached_statements(self, test: str) -> Reached:
         """Run a test without any change and record its lines."""
         lines: dict[str, set[int]] = defaultdict(set)
 
         def run_test(send: Callable[[str], None]) -> None:
-            sys.settrace(_tracer(lines))
+            sys.settrace(_make_tracer(lines))
             start_time = time.process_time()
             failed = self._fails(test)
             sys.settrace(None)
@@ -104,7 +104,7 @@ class Session:
         message, _ = run_forked(run_test)
         return Reached(**json.loads(message[-1])) if message else Reached(test, False, 0.0, {})
 
-    def first_failure(self, tests: Iterable[tuple[str, float]], mutant: Mutant | None = None) -> str:
+    def find_first_failure(self, tests: Iterable[tuple[str, float]], mutant: Mutant | None = None) -> str:
         """Return the name of the first test that fails under a change, empty if all pass; `tests` has names and
         seconds."""
 
@@ -135,8 +135,8 @@ class Session:
 
     def _install(self, mutant: Mutant) -> None:
         """Replace the code of all functions of a source, also of imported and wrapped functions."""
-        for code in nested_codes(compile(mutant.changed, str(ROOT / mutant.file), "exec")):
-            for function in self.functions.get(_code_key(code), ()):
+        for code in list_nested_codes(compile(mutant.changed, str(ROOT / mutant.file), "exec")):
+            for function in self.functions.get(_make_code_key(code), ()):
                 function.__code__ = code
 
 
@@ -160,19 +160,19 @@ def group_by_name(items: Iterable[pytest.Item]) -> dict[str, list[pytest.Item]]:
     return dict(groups)
 
 
-def _code_key(code: CodeType) -> tuple[str, str, int]:
+def _make_code_key(code: CodeType) -> tuple[str, str, int]:
     return code.co_filename, code.co_qualname, code.co_firstlineno
 
 
-def nested_codes(code: CodeType) -> Iterator[CodeType]:
+def list_nested_codes(code: CodeType) -> Iterator[CodeType]:
     """Code of all functions nested in a code."""
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield constant
-            yield from nested_codes(constant)
+            yield from list_nested_codes(constant)
 
 
-def _tracer(lines: dict[str, set[int]]) -> Callable[[FrameType, str, Any], Any]:
+def _make_tracer(lines: dict[str, set[int]]) -> Callable[[FrameType, str, Any], Any]:
     """Trace that records the lines of the core."""
 
     def trace_call(frame: FrameType, event: str, value: Any) -> Any:

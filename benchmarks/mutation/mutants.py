@@ -63,13 +63,13 @@ class Mutant:
         return self.source[: self.start] + self.text + self.source[self.stop :]
 
 
-def mutants_of(file: str, source: str) -> Iterator[Mutant]:
+def list_mutants_of_function(file: str, source: str) -> Iterator[Mutant]:
     """All changes of the bodies of a source's functions."""
     starts = [0]
     for line in source.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
 
-    def offset_of(line: int, column: int) -> int:
+    def compute_offset(line: int, column: int) -> int:
         # ast counts bytes; code without comments and docstrings is ASCII.
         return starts[line - 1] + column
 
@@ -95,39 +95,39 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
             description=description,
         )
 
-    for node, lines, where in _nodes_in_functions(ast.parse(source)):
+    for node, lines, where in _list_function_nodes(ast.parse(source)):
         match node:
             case ast.BinOp(left=left, op=op) if type(op) in OTHER_OPERATORS:
                 symbol, replacement = OTHER_OPERATORS[type(op)]
-                offset = find_sign(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+                offset = find_sign(source, compute_offset(left.end_lineno or 0, left.end_col_offset or 0), symbol)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
                     yield mutant(lines, where, offset, offset + len(symbol), replacement)
             case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED_COMPARISONS:
                 symbol, replacement = REVERSED_COMPARISONS[type(op)]
-                offset = find_sign(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+                offset = find_sign(source, compute_offset(left.end_lineno or 0, left.end_col_offset or 0), symbol)
                 yield mutant(lines, where, offset, offset + len(symbol), replacement)
             case ast.UnaryOp(op=ast.USub(), operand=operand) if not isinstance(operand, ast.Constant):
-                offset = offset_of(node.lineno, node.col_offset)
+                offset = compute_offset(node.lineno, node.col_offset)
                 yield mutant(lines, where, offset, offset + 1, "+")
             case ast.Constant(value=float(value)) if value:
                 start, stop = (
-                    offset_of(node.lineno, node.col_offset),
-                    offset_of(node.end_lineno or 0, node.end_col_offset or 0),
+                    compute_offset(node.lineno, node.col_offset),
+                    compute_offset(node.end_lineno or 0, node.end_col_offset or 0),
                 )
                 yield mutant(lines, where, start, stop, repr(FACTOR * value))
 
 
-def _nodes_in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+def _list_function_nodes(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
     """Arithmetic nodes of functions, with the lines of their statement and the function's name."""
     for node in ast.iter_child_nodes(tree):
         name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
-        yield from _nodes_in_functions(node, name)
+        yield from _list_function_nodes(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                yield from ((subnode, lines, name) for subnode, lines in _computing_nodes(statement, range(0)))
+                yield from ((subnode, lines, name) for subnode, lines in _list_computing_nodes(statement, range(0)))
 
 
-def _computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
+def _list_computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
     """Nodes of a statement without raised errors, f-strings, assertions, types and nested functions."""
     if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
         return
@@ -140,7 +140,7 @@ def _computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, ran
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _computing_nodes(child, lines)
+                yield from _list_computing_nodes(child, lines)
 
 
 def find_sign(source: str, start: int, operator_text: str) -> int:
@@ -151,11 +151,11 @@ def find_sign(source: str, start: int, operator_text: str) -> int:
     return offset
 
 
-def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
+def list_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
     """All changes of the sources of `packages`, ordered by file."""
     files = sorted(path for package in packages for path in (root / "contactstudy" / package).rglob("*.py"))
     return [
         mutant
         for path in files
-        for mutant in mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
+        for mutant in list_mutants_of_function(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
     ]

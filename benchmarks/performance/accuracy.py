@@ -61,7 +61,7 @@ class Comparison:
         return abs(self.loose - self.tight) <= self.error
 
 
-def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+def _draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
@@ -72,8 +72,8 @@ def draw_case(seed: int, number: int) -> RandomCase:
     material = [None, None, None, STEEL, BRONZE][rng.integers(5)]
     steel_modulus = STEEL.plane_strain_modulus
     modulus = steel_modulus if material is None else 1 / (1 / steel_modulus + 1 / material.plane_strain_modulus)
-    a = 4 * p0 * RADIUS / (2 * modulus)
-    length = a * _log_uniform(rng, 8, 200)
+    half_width = 4 * p0 * RADIUS / (2 * modulus)
+    length = half_width * _draw_log_uniform(rng, 8, 200)
     kind, profile = draw_profile(rng, p0, length, modulus)
     roller = Roller(
         radius=RADIUS, length=length, profile=profile, material=material, ends=("free", "none")[rng.integers(2)]
@@ -82,22 +82,24 @@ def draw_case(seed: int, number: int) -> RandomCase:
     distance = 0.0
     if body_kind != "half":
         distance = float(
-            (0.0, a * _log_uniform(rng, 0.1, 5), -a * rng.uniform(0.1, 2))[rng.choice(3, p=[0.5, 0.4, 0.1])]
+            (0.0, half_width * _draw_log_uniform(rng, 0.1, 5), -half_width * rng.uniform(0.1, 2))[
+                rng.choice(3, p=[0.5, 0.4, 0.1])
+            ]
         )
     body: Body = HalfSpace(material=STEEL)
     if body_kind == "quarter":
         body = QuarterSpace(material=STEEL)
     elif body_kind == "finite":
-        second_distance = distance if rng.random() < 0.5 else a * rng.uniform(0.0, 5)
+        second_distance = distance if rng.random() < 0.5 else half_width * rng.uniform(0.0, 5)
         body = FiniteLengthSpace(length=length + distance + second_distance, material=STEEL)
     inclination: dict[str, float] = {}
-    slope = min(1.0, 20 * a / length)
+    slope = min(1.0, 20 * half_width / length)
     if (draw := rng.random()) < 0.3:
         inclination = {"tilt": float(rng.uniform(-1e-3, 1e-3) * slope)}
     elif draw < 0.4:
         inclination = {"load_position": distance + length * (0.5 + 0.05 * float(rng.uniform(-1, 1)))}
     name = (
-        f"{kind}, L {length / a:.0f}a, {p0 / 1e9:.2f} GPa, {body_kind}, e {distance / a:.2f}a, "
+        f"{kind}, L {length / half_width:.0f}a, {p0 / 1e9:.2f} GPa, {body_kind}, e {distance / half_width:.2f}a, "
         f"{'rigid' if material is None else 'steel' if material is STEEL else 'bronze'}"
         + (f" ends {roller.ends}" if material is not None else "")
         + "".join(f", {key} {value:.2e}" for key, value in inclination.items())
@@ -120,8 +122,8 @@ def draw_case(seed: int, number: int) -> RandomCase:
 
 def draw_profile(rng: np.random.Generator, p0: float, length: float, modulus: float) -> tuple[str, profiles.Profile]:
     """Draw a profile and its name."""
-    fillet = min(_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
-    sag = _log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
+    fillet = min(_draw_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
+    sag = _draw_log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
     crown = profiles.FullCrown(crown_radius=length**2 / (8 * sag))
     rounded_cylinder = profiles.Cylinder(fillet_radius=fillet)
     kind = ("sharp", "fillet", "crown", "crown + fillet", "lundberg", "partial crown", "measured")[rng.integers(7)]
@@ -140,7 +142,7 @@ def draw_profile(rng: np.random.Generator, p0: float, length: float, modulus: fl
         return name, profiles.Lundberg.for_pressure(pressure, radius=RADIUS, modulus=modulus)
     if kind == "partial crown":
         straight = length * rng.uniform(0.3, 0.8)
-        radius = _log_uniform(rng, 0.1, 3.0)
+        radius = _draw_log_uniform(rng, 0.1, 3.0)
         return f"{name} {straight / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(straight, radius)
     x = np.linspace(-0.5 * length, 0.5 * length, 401)
     drops = (crown + rounded_cylinder).drop(x, length)
@@ -153,7 +155,7 @@ def compare_values(random_case: RandomCase, accuracy: float, reference: float) -
     """Solve a case at both accuracies and compare its values."""
     assert random_case.case is not None
     case = random_case.case
-    loose, tight = (refined_contact_values(case, accuracy_value) for accuracy_value in (accuracy, reference))
+    loose, tight = (compute_refined_values(case, accuracy_value) for accuracy_value in (accuracy, reference))
     scale = case.hertz_max_pressure
     for value in VALUES:
         error = float(loose[f"{value}_error"]) / scale
@@ -188,7 +190,7 @@ def compare_values(random_case: RandomCase, accuracy: float, reference: float) -
             )
 
 
-def refined_contact_values(case: Case, accuracy: float) -> xr.Dataset:
+def compute_refined_values(case: Case, accuracy: float) -> xr.Dataset:
     return refined_values(case, refine_contact(case, accuracy, 1e-6))
 
 

@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from benchmarks.performance.peers import contact_of
+from benchmarks.performance.peers import solve_peer_contact
 from benchmarks.performance.problems import HALF_WIDTH, STEEL, roller
-from benchmarks.performance.timing import Report, Row, format_time, medians, nudge
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, nudge
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, cache, stress_field
 from contactstudy.bodies import Body
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
@@ -34,7 +34,7 @@ def build_bodies(repeats: int, _: Report) -> Iterator[Row]:
         "friction": lambda: SurfaceOperator.of(body, grid, (Load.NORMAL, Load.ALONG_Y)),
         "kept": lambda: surface_operator(body, grid),
     }
-    seconds = medians(timed_functions, repeats, warm_up=False)
+    seconds = compute_medians(timed_functions, repeats, warm_up=False)
     yield Row(
         work="building the operator, 128 x 64, L = 8a",
         ours=format_time(seconds["cold"]),
@@ -70,7 +70,7 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
         timed_functions: dict[str, Callable[[], object]] = {
             name: partial(compute_stresses, body, friction, load, first_call) for name, body in bodies.items()
         }
-        return medians(timed_functions, repeats)
+        return compute_medians(timed_functions, repeats)
 
     sliding = time_stresses(0.3, line_pressure, False)
     first_call = time_stresses(0.0, line_pressure, True)
@@ -114,11 +114,11 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     contact_seconds, build_seconds, application_counts = {}, {}, {}
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)
-        grid = Grid.from_centres(problem.gap_array()["x"].values, problem.gap_array()["y"].values)
+        grid = Grid.from_centres(problem.make_gap_array()["x"].values, problem.make_gap_array()["y"].values)
         build_operator = partial(SurfaceOperator.of, problem.body, grid)
-        build_seconds[cells] = medians({"build": build_operator}, min(repeats, 3), warm_up=False)["build"]
-        contact_seconds[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
-        application_counts[cells] = int(contact_of(problem)["iterations"])
+        build_seconds[cells] = compute_medians({"build": build_operator}, min(repeats, 3), warm_up=False)["build"]
+        contact_seconds[cells] = compute_medians({"contact": partial(solve_peer_contact, problem)}, repeats)["contact"]
+        application_counts[cells] = int(solve_peer_contact(problem)["iterations"])
     shortest, longest = LONG_CELLS[0], LONG_CELLS[-1]
     growth = contact_seconds[longest] / contact_seconds[shortest] / (longest / shortest)
     growth_per_application = growth * application_counts[shortest] / application_counts[longest]

@@ -10,12 +10,12 @@ from benchmarks.performance.problems import FloatArray, Problem
 MAX_ITERATIONS = 5000
 
 
-def corner_primitive(x: FloatArray, y: FloatArray) -> FloatArray:
+def compute_corner_primitive(x: FloatArray, y: FloatArray) -> FloatArray:
     distance = np.hypot(x, y)
     return np.asarray(x * np.log(y + distance) + y * np.log(x + distance))
 
 
-def influence_spectrum(problem: Problem) -> FloatArray:
+def compute_influence_spectrum(problem: Problem) -> FloatArray:
     """Spectrum of the displacement of every cell under unit pressure on one cell (A. E. H. Love's formula)."""
     axes = []
     for count, size in zip(problem.gap.shape, problem.size, strict=True):
@@ -25,10 +25,10 @@ def influence_spectrum(problem: Problem) -> FloatArray:
     half_x, half_y = (size / count / 2 for count, size in zip(problem.gap.shape, problem.size, strict=True))
     x, y = axes[0][:, None], axes[1][None, :]
     kernel = (
-        corner_primitive(x + half_x, y + half_y)
-        + corner_primitive(x - half_x, y - half_y)
-        - corner_primitive(x + half_x, y - half_y)
-        - corner_primitive(x - half_x, y + half_y)
+        compute_corner_primitive(x + half_x, y + half_y)
+        + compute_corner_primitive(x - half_x, y - half_y)
+        - compute_corner_primitive(x + half_x, y - half_y)
+        - compute_corner_primitive(x - half_x, y + half_y)
     )
     return np.asarray(fft.rfft2(kernel / (np.pi * problem.contact_modulus)))
 
@@ -38,7 +38,7 @@ def solve_classic(problem: Problem, tolerance: float) -> FloatArray:
     gap = problem.finite_gap
     cells = gap.shape
     padded = (2 * cells[0], 2 * cells[1])
-    spectrum = influence_spectrum(problem)
+    spectrum = compute_influence_spectrum(problem)
 
     def apply(pressure: FloatArray) -> FloatArray:
         convolution = fft.irfft2(fft.rfft2(pressure, s=padded) * spectrum, s=padded)

@@ -41,7 +41,7 @@ FRICTIONS = np.linspace(0.01, 0.1, 10)
 CORES, MINUTES = 2, 10.0
 
 
-def contact_table_study(contacts: int) -> Study:
+def make_contact_table_study(contacts: int) -> Study:
     """Study of a random sample of the contacts."""
     combinations = np.array(list(itertools.product(LOADS, DISTANCES, TILTS)))
     selected = np.random.default_rng(1).permutation(combinations)[:contacts]
@@ -55,7 +55,7 @@ def contact_table_study(contacts: int) -> Study:
     )
 
 
-def processor_seconds() -> float:
+def measure_processor_seconds() -> float:
     """Processor time of this process and its finished workers."""
     return time.process_time() + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
 
@@ -70,16 +70,16 @@ def main() -> None:
     os.environ.update(WORKER_ENVIRONMENT)
     with tempfile.TemporaryDirectory() as folder:
         # Imports and plans of transforms are made once per process.
-        run_study(contact_table_study(1), Path(folder) / "first", workers=0, progress=False)
+        run_study(make_contact_table_study(1), Path(folder) / "first", workers=0, progress=False)
         profile = cProfile.Profile(time.process_time)
-        start_seconds, start_time = processor_seconds(), time.perf_counter()
+        start_seconds, start_time = measure_processor_seconds(), time.perf_counter()
         if options.profile:
             profile.enable()
         report = run_study(
-            contact_table_study(options.sample), Path(folder) / "table", workers=options.workers, progress=False
+            make_contact_table_study(options.sample), Path(folder) / "table", workers=options.workers, progress=False
         )
         profile.disable()
-        seconds, elapsed_seconds = processor_seconds() - start_seconds, time.perf_counter() - start_time
+        seconds, elapsed_seconds = measure_processor_seconds() - start_seconds, time.perf_counter() - start_time
         bytes_written = sum(path.stat().st_size for path in report.files)
     assert set(report.counts) == {"ok"}, report.counts
     cases, seconds_per_contact = len(report.plan), seconds / options.sample

@@ -12,13 +12,13 @@ from benchmarks.performance.peers import (
     OURS,
     SETTINGS,
     Solver,
-    contact_of,
     ignore_warnings,
     load_codes,
     solve_ours,
+    solve_peer_contact,
 )
 from benchmarks.performance.problems import FloatArray, Problem, roller, sphere
-from benchmarks.performance.timing import Report, Row, format_time, join_times, medians
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, join_times
 from contactstudy import solve_contact
 from contactstudy.contact import ContactSettings
 
@@ -27,12 +27,12 @@ ROLLER_CELLS, ROLLER_WINDOW = (512, 64), 40.0
 PEERS = ("aspher", "tamaas", "ContactMechanics", "plain SciPy")
 
 
-def relative_difference(pressure: FloatArray, converged_pressure: FloatArray) -> float:
+def compute_relative_difference(pressure: FloatArray, converged_pressure: FloatArray) -> float:
     """Sum of the absolute differences of two pressures over the sum of the converged pressure."""
     return float(np.abs(pressure - converged_pressure).sum() / converged_pressure.sum())
 
 
-def loosest_setting(solve: Solver, problem: Problem, goal: float = ERROR_BOUND) -> tuple[float, float]:
+def find_loosest_setting(solve: Solver, problem: Problem, goal: float = ERROR_BOUND) -> tuple[float, float]:
     """Loosest tolerance with an error below `goal` relative to the code's limit, and this error.
 
     Parameters
@@ -54,7 +54,9 @@ def loosest_setting(solve: Solver, problem: Problem, goal: float = ERROR_BOUND) 
 
     def error(setting_index: int) -> float:
         if setting_index not in errors:
-            errors[setting_index] = relative_difference(solve(problem, SETTINGS[setting_index]), converged_pressure)
+            errors[setting_index] = compute_relative_difference(
+                solve(problem, SETTINGS[setting_index]), converged_pressure
+            )
         return errors[setting_index]
 
     setting_index = SETTINGS.index(min(SETTINGS, key=lambda setting: abs(np.log10(setting / goal))))
@@ -71,20 +73,22 @@ def compare(problem: Problem, names: tuple[str, ...], repeats: int, report: Repo
     """Median seconds of each code at equal measured accuracy, and a note on its settings."""
     timed_functions: dict[str, Callable[[], object]] = {}
     notes = []
-    limits: dict[str, FloatArray] = {}
+    converged_pressures: dict[str, FloatArray] = {}
     for name, solve in load_codes(names, report.add_remark):
         with ignore_warnings():
             try:
-                setting, error = loosest_setting(solve, problem)
+                setting, error = find_loosest_setting(solve, problem)
             except RuntimeError as reason:
                 report.add_remark(f"{name} is skipped for {problem.gap.shape} cells: {reason}")
                 continue
-            limits[name] = solve(problem, setting)
+            converged_pressures[name] = solve(problem, setting)
         timed_functions[name] = partial(solve, problem, setting)
         notes.append(f"{name} {error:.0e} at {setting:.0e}")
     with ignore_warnings():
-        seconds = medians(timed_functions, repeats, warm_up=False)
-    max_difference = max(relative_difference(pressure, limits[OURS]) for pressure in limits.values())
+        seconds = compute_medians(timed_functions, repeats, warm_up=False)
+    max_difference = max(
+        compute_relative_difference(pressure, converged_pressures[OURS]) for pressure in converged_pressures.values()
+    )
     return seconds, f"measured error at setting: {', '.join(notes)}; codes agree within {max_difference:.0e}"
 
 
@@ -94,7 +98,7 @@ def point_contact(repeats: int, report: Report) -> Iterator[Row]:
         problem = sphere(cells)
         seconds, note = compare(problem, PEERS, repeats if cells < 512 else min(repeats, 3), report)
         our_seconds = seconds.pop(OURS)
-        iterations = float(contact_of(problem)["iterations"])
+        iterations = float(solve_peer_contact(problem)["iterations"])
         fastest_peer = seconds.get("aspher")
         yield Row(
             work=f"half-space point contact {cells}²",
@@ -131,13 +135,14 @@ def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
     for overhang, label in ((2.0, "ends 2a inside the body's"), (0.0, "roller as long as the body")):
         with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
         timed_functions: dict[str, Callable[[], object]] = {
-            "finite": partial(contact_of, with_ends),
-            "built": partial(contact_of, half_space),
+            "finite": partial(solve_peer_contact, with_ends),
+            "built": partial(solve_peer_contact, half_space),
             "cold": partial(solve_ours, half_space, 1e-6),
         }
-        seconds = medians(timed_functions, repeats)
+        seconds = compute_medians(timed_functions, repeats)
         application_counts = {
-            name: int(contact_of(problem)["iterations"]) for name, problem in (("f", with_ends), ("h", half_space))
+            name: int(solve_peer_contact(problem)["iterations"])
+            for name, problem in (("f", with_ends), ("h", half_space))
         }
         ratio = seconds["finite"] / seconds["built"]
         yield Row(
@@ -164,7 +169,7 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
         counts = []
         for name, problem in cases.items():
             contact = solve_contact(
-                problem.body, problem.gap_array(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
+                problem.body, problem.make_gap_array(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
             )
             if not bool(contact["converged"]):
                 report.add_remark(f"not converged: {name} at {tolerance:g}")

@@ -40,7 +40,7 @@ class LogarithmicDrop(Shape):
         return np.asarray(-self.amplitude * np.log(1 - 0.998 * (2 * x / length) ** 2))
 
 
-def roller_case(speed: float, *, free_ends: bool) -> Case:
+def make_roller_case(speed: float, *, free_ends: bool) -> Case:
     """A rigid roller on a flush steel body, or on a half-space, in an oil with the numbers M and L at `SPEED`."""
     modulus = STEEL.plane_strain_modulus
     pressure = modulus * HALF_WIDTH / (2 * RADIUS)
@@ -58,7 +58,7 @@ def roller_case(speed: float, *, free_ends: bool) -> Case:
     )
 
 
-def crowned_case(speed: float) -> Case:
+def make_crowned_case(speed: float) -> Case:
     """A rigid roller with Lundberg's crown for 1 GPa on a flush steel body, in an oil of VG 220 at 70 C."""
     crown = Lundberg.for_pressure(1e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     return Case(
@@ -81,8 +81,8 @@ def time_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.Da
 
 def films(_: int, report: Report) -> Iterator[Row]:
     """Films from the dry contact, solved once each; later films reuse the operators of earlier films."""
-    seconds, film = time_film(roller_case(SPEED, free_ends=True))
-    half_space_seconds, half_space_film = time_film(roller_case(SPEED, free_ends=False))
+    seconds, film = time_film(make_roller_case(SPEED, free_ends=True))
+    half_space_seconds, half_space_film = time_film(make_roller_case(SPEED, free_ends=False))
     min_film, error = 1e9 * float(film["least_film"]), 1e9 * float(film["least_film_error"])
     half_space_min_film = 1e9 * float(half_space_film["least_film"])
     if error > ACCURACY * 1e9 * float(film["central_film"]):
@@ -97,7 +97,7 @@ def films(_: int, report: Report) -> Iterator[Row]:
         notes=f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {half_space_min_film:.1f} nm",
     )
     for factor in SPEED_FACTORS:
-        next_seconds, _film = time_film(roller_case(factor * SPEED, free_ends=True), start=film)
+        next_seconds, _film = time_film(make_roller_case(factor * SPEED, free_ends=True), start=film)
         yield Row(
             work=f"film at {factor:g} of the speed",
             ours=format_time(next_seconds),
@@ -108,7 +108,7 @@ def films(_: int, report: Report) -> Iterator[Row]:
         )
     for speed in SPEEDS:
         cache.clear()
-        seconds, film = time_film(crowned_case(speed))
+        seconds, film = time_film(make_crowned_case(speed))
         central, least = (
             f"{1e9 * float(film[name]):.1f} +- {1e9 * float(film[f'{name}_error']):.1f} nm"
             for name in ("central_film", "least_film")

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.performance.peers import contact_of
+from benchmarks.performance.peers import solve_peer_contact
 from benchmarks.performance.problems import HALF_WIDTH, roller
 from contactstudy import stress_field
 
 
-def peak_memory() -> float:
+def measure_peak_memory() -> float:
     """Return the peak memory of the process so far, megabytes."""
     status = Path("/proc/self/status")
     if status.exists():  # `ru_maxrss` includes the memory of the parent process
@@ -28,13 +28,13 @@ def peak_memory() -> float:
 
 def main() -> None:
     """Solve the contact and the stresses of one section, and print the peak after each step."""
-    peaks = [peak_memory()]
+    peaks = [measure_peak_memory()]
     problem = roller((1000, 48), 100.0, free_ends=True)
-    contact = contact_of(problem)
-    peaks.append(peak_memory())
+    contact = solve_peer_contact(problem)
+    peaks.append(measure_peak_memory())
     depths, pressure = np.linspace(0.0, 5 * HALF_WIDTH, 25), contact["pressure"]
     stress_field(problem.body, pressure, y=[0.0], z=depths, inside_cells=pressure)
-    peaks.append(peak_memory())
+    peaks.append(measure_peak_memory())
     print(*(f"{value:.1f}" for value in peaks))
 
 

@@ -25,15 +25,15 @@ LIMIT_SETTING = 1e-10
 
 def solve_ours(problem: Problem, tolerance: float) -> FloatArray:
     """Pressure by this package, with an empty cache."""
-    return np.asarray(contact_of(problem, tolerance, stretch=nudge())["pressure"].values)
+    return np.asarray(solve_peer_contact(problem, tolerance, stretch=nudge())["pressure"].values)
 
 
-def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.0) -> xr.Dataset:
+def solve_peer_contact(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.0) -> xr.Dataset:
     """Contact by this package under a load that no earlier contact has; the operator of a `stretch` is reused."""
     return solve_contact(
         problem.body,
-        problem.gap_array(stretch),
-        load=problem.nudged_load(),
+        problem.make_gap_array(stretch),
+        load=problem.compute_changed_load(),
         settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
     )
 

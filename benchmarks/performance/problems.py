@@ -53,14 +53,14 @@ class Problem:
         finite = np.isfinite(self.gap)
         return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
 
-    def gap_array(self, stretch: float = 1.0) -> xr.DataArray:
+    def make_gap_array(self, stretch: float = 1.0) -> xr.DataArray:
         """Gap with its coordinates; a new stretch near 1 makes a grid without a kept operator."""
         cells_x, cells_y = self.gap.shape
         x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch
         y = (np.arange(cells_y) + 0.5 - cells_y / 2) * self.size[1] / cells_y * stretch
         return xr.DataArray(self.gap, coords={"x": x, "y": y}, dims=("x", "y"))
 
-    def nudged_load(self) -> float:
+    def compute_changed_load(self) -> float:
         """Load that differs from every earlier load in its last digits."""
         return self.load * nudge()
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.performance.problems import STEEL
-from benchmarks.performance.timing import Report, Row, format_time, medians, nudge
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, nudge
 from contactstudy import Case, FiniteLengthSpace, Roller, choose_grid, profiles, solve
 
 RADIUS, LENGTH, FILLET, PEAK = 5e-3, 10e-3, 0.2e-3, 1.5e9
@@ -17,7 +17,7 @@ CELLS = 16
 """Uniform cells per half-width."""
 
 
-def roller_case() -> Case:
+def make_roller_case() -> Case:
     """A roller as long as the body; every call makes a body without kept kernels."""
     # Bodies that differ by rounding alone share their kernels.
     length = LENGTH * (1 + 1e6 * (nudge() - 1))
@@ -27,7 +27,7 @@ def roller_case() -> Case:
 
 def solve_roller(*, uniform: bool) -> xr.Dataset:
     """Contact and stresses at 41 x 1 x 25 points."""
-    case = roller_case()
+    case = make_roller_case()
     half_width = case.hertz_half_width
     x, z = np.linspace(0.0, 0.5 * case.roller.length, 41), np.linspace(0.0, 3.0, 25) * half_width
     grid = choose_grid(case, cells_x=CELLS, cells_y=CELLS) if uniform else None
@@ -40,7 +40,7 @@ def refined_columns(repeats: int, report: Report) -> Iterator[Row]:
         "refined": partial(solve_roller, uniform=False),
         "uniform": partial(solve_roller, uniform=True),
     }
-    seconds = medians(timed_functions, min(repeats, 3))
+    seconds = compute_medians(timed_functions, min(repeats, 3))
     result = solve_roller(uniform=False)
     peak, error = float(result["peak_pressure"]), float(result["peak_pressure_error"])
     if error > 0.01 * peak:

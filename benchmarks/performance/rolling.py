@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from benchmarks.performance.timing import Report, Row, format_time, medians, nudge
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, nudge
 from contactstudy import FiniteLengthSpace, HalfSpace, Rolling, solve_contact
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.contact import ContactSettings
@@ -59,7 +59,7 @@ def steady_rolling(repeats: int, report: Report) -> Iterator[Row]:
             timed_functions[f"{name}, rolling"] = lambda solve_normal=solve_normal, rolling_motion=rolling_motion: (
                 solve_normal(load=LOAD * nudge(), friction=FRICTION, motion=rolling_motion)
             )
-        seconds = medians(timed_functions, min(repeats, 3) if cells > 10_000 else repeats)
+        seconds = compute_medians(timed_functions, min(repeats, 3) if cells > 10_000 else repeats)
         rolling_seconds = {name: seconds[f"{name}, rolling"] - seconds[name] for name in bodies}
         solution = timed_functions["half-space, rolling"]()
         assert isinstance(solution, xr.Dataset)

@@ -146,7 +146,7 @@ def print_overhead_of_distinct_contacts(contacts: int = 1000) -> None:
     print(f"overhead: {1e3 * seconds / contacts:.2f} ms per case, {contacts} distinct contacts (bar 5 ms)", flush=True)
 
 
-def peak_memory() -> float:
+def measure_peak_memory() -> float:
     """Largest memory of this process, MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
 
@@ -163,10 +163,11 @@ def print_client_memory(cases: int) -> None:
             report = run_study(study, Path(name, f"{count}"), scheduler=client, progress=False)
             seconds = time.perf_counter() - start_time
             assert report.counts == {"ok": count}, report.counts
-            workers = ", ".join(f"{memory:.0f}" for memory in client.run(peak_memory).values())
+            workers = ", ".join(f"{memory:.0f}" for memory in client.run(measure_peak_memory).values())
+            scheduler_memory = client.run_on_scheduler(measure_peak_memory)
             print(
                 f"client: {count} cases, {seconds:.0f} s, {len(report.files)} files; largest memory so far: scheduler "
-                f"{client.run_on_scheduler(peak_memory):.0f} MB, workers {workers} MB, run {peak_memory():.0f} MB",
+                f"{scheduler_memory:.0f} MB, workers {workers} MB, run {measure_peak_memory():.0f} MB",
                 flush=True,
             )
 
@@ -193,7 +194,7 @@ def print_files(cases: int, level: str) -> None:
         f"files, level {level}: {study.size} cases, {count} files, {size / study.size:.0f} bytes per case, "
         f"{1e3 * solving_seconds / study.size:.1f} ms per case with the stand-in solver in this process, opened in "
         f"{opening_seconds:.1f} s of processor time, one number of all ({max_pressure:.3g}) in "
-        f"{reading_seconds:.2f} s, largest memory {peak_memory():.0f} MB",
+        f"{reading_seconds:.2f} s, largest memory {measure_peak_memory():.0f} MB",
         flush=True,
     )
 
@@ -210,7 +211,7 @@ def print_planning() -> None:
     plan = study.plan()
     unique, checked = len(plan.unique), plan.review.checked
     seconds = time.process_time() - start_time
-    memory = peak_memory()
+    memory = measure_peak_memory()
     print(
         f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {memory:.0f} MB (bar 1000 MB)"
     )

@@ -69,7 +69,9 @@ class Report:
         return "\n".join(lines + [""] + [f"* {remark}" for remark in self.remarks])
 
 
-def medians(functions: Mapping[str, Callable[[], object]], repeats: int, *, warm_up: bool = True) -> dict[str, float]:
+def compute_medians(
+    functions: Mapping[str, Callable[[], object]], repeats: int, *, warm_up: bool = True
+) -> dict[str, float]:
     """Median seconds of each function; the functions take turns, so the load of the machine affects all equally.
 
     Parameters

@@ -110,9 +110,9 @@ def test_borders_of_hertz_pressure_equal_half_width(half_width: float, centre: f
 def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
     result = strip_result(half_width=2e-4, max_pressure=1e9)
     profiles = analysis.axial_profiles(result)
-    loaded = profiles.isel(x=np.flatnonzero(profiles["line_load"] > 0))
-    assert loaded["half_width"].values == pytest.approx(2e-4, rel=1e-9)
-    assert loaded["line_load"].values == pytest.approx(np.pi / 2 * 2e-4 * 1e9, rel=2e-3)
+    loaded_profiles = profiles.isel(x=np.flatnonzero(profiles["line_load"] > 0))
+    assert loaded_profiles["half_width"].values == pytest.approx(2e-4, rel=1e-9)
+    assert loaded_profiles["line_load"].values == pytest.approx(np.pi / 2 * 2e-4 * 1e9, rel=2e-3)
     assert profiles["unloaded_gap"].isnull().values.tolist() == (profiles["line_load"] == 0).values.tolist()
 
 
@@ -216,9 +216,9 @@ def test_edge_pressure_of_cut_end_is_nan(x_slice: slice, first: float, last: flo
     assert [float(end_pressures[f"edge_pressure_{end_name}"]) for end_name in ("first", "last")] == pytest.approx(
         [first, last], nan_ok=True
     )
-    factors = analysis.edge_factors(selected)
+    edge_factors = analysis.edge_factors(selected)
     for end_name in ("first", "last"):
-        assert np.isnan(float(factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
+        assert np.isnan(float(edge_factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
     half_result = analysis.edge_pressure(full_contact.sel(y=slice(0, None)))
     assert [float(pressure) for pressure in half_result.values()] == [1.0, 4.0]
 

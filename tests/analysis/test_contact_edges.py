@@ -22,7 +22,7 @@ from contactstudy.profiles import Cylinder, FullCrown
 UNIT_HALF_SPACE = HalfSpace(material=Material(0.75, 0.5))
 
 
-def ellipsoid_contact(window: float, cells: int, curvature_ratio: float = 1.0) -> xr.Dataset:
+def make_ellipsoid_contact(window: float, cells: int, curvature_ratio: float = 1.0) -> xr.Dataset:
     """Contact of contact radius 1 under a sphere, or of an ellipsoid whose curvature along x is multiplied."""
     centres = window * (2 * np.arange(cells) + 1 - cells) / cells
     gap = xr.DataArray(
@@ -35,7 +35,7 @@ def ellipsoid_contact(window: float, cells: int, curvature_ratio: float = 1.0) -
 
 @given(st.floats(1.7, 2.0))
 def test_edges_of_sphere_equal_hertz_circle(window):
-    contact = ellipsoid_contact(window, 64)
+    contact = make_ellipsoid_contact(window, 64)
     step = float(contact.y[1] - contact.y[0])
     edges = contact_edges(contact)
     column = np.abs(contact.x) < 0.5
@@ -48,7 +48,7 @@ def test_edges_of_sphere_equal_hertz_circle(window):
 def test_fitted_edges_are_closer_than_counted_cells():
     fitted_errors, counted_errors = [], []
     for window in np.linspace(1.75, 1.85, 11):
-        contact = ellipsoid_contact(float(window), 64)
+        contact = make_ellipsoid_contact(float(window), 64)
         mid_section = contact.isel(x=32)
         step = float(contact.y[1] - contact.y[0])
         expected = np.sqrt(1 - float(mid_section.x) ** 2)
@@ -58,7 +58,7 @@ def test_fitted_edges_are_closer_than_counted_cells():
 
 
 def test_edges_of_mirrored_contact_are_mirrored():
-    contact = ellipsoid_contact(1.8, 48, curvature_ratio=0.8)
+    contact = make_ellipsoid_contact(1.8, 48, curvature_ratio=0.8)
     shifted_contact = contact.assign_coords(x=contact.x + 0.3, y=contact.y + 0.2)
     mirrored_contact = shifted_contact.assign_coords(x=-shifted_contact.x, y=-shifted_contact.y).sortby(["x", "y"])
     edges, mirrored_edges = contact_edges(shifted_contact), contact_edges(mirrored_contact)
@@ -67,7 +67,7 @@ def test_edges_of_mirrored_contact_are_mirrored():
 
 
 def test_area_of_ellipse_equals_product_of_axes():
-    edges = contact_edges(ellipsoid_contact(1.9, 96, curvature_ratio=0.7))
+    edges = contact_edges(make_ellipsoid_contact(1.9, 96, curvature_ratio=0.7))
     width_y, length_x = 2 * float(edges.half_width.max()), float(edges.contact_length)
     assert float(edges.contact_area) == pytest.approx(np.pi / 4 * width_y * length_x, rel=2e-3)
 
@@ -93,21 +93,21 @@ def test_edges_of_flat_punch_equal_punch(on_cells):
 
 
 def test_no_contact_has_no_edges():
-    contact = ellipsoid_contact(1.8, 16)
+    contact = make_ellipsoid_contact(1.8, 16)
     edges = contact_edges(contact.assign(pressure=0 * contact.pressure))
     assert np.isnan(edges.half_width).all()
     assert (float(edges.contact_length), float(edges.contact_area)) == (0.0, 0.0)
 
 
 def test_every_variable_has_a_unit():
-    edges = contact_edges(ellipsoid_contact(1.8, 32))
+    edges = contact_edges(make_ellipsoid_contact(1.8, 32))
     assert {variable.attrs["units"] for variable in edges.data_vars.values()} == {"m", "m2"}
 
 
 @pytest.mark.parametrize("missing", ["pressure", "gap"])
 def test_missing_pressure_or_gap_raises(missing):
     with pytest.raises(InvalidInputError, match=missing):
-        contact_edges(ellipsoid_contact(1.8, 16).drop_vars(missing))
+        contact_edges(make_ellipsoid_contact(1.8, 16).drop_vars(missing))
 
 
 def test_argument_without_dataset_raises():

@@ -14,8 +14,8 @@ fractions = st.floats(0, 1)
 points = st.tuples(fractions, fractions, fractions)
 
 
-def linear_field() -> xr.Dataset:
-    x, y, z = (xr.DataArray(np.linspace(0, 1, n), dims=axis) for axis, n in zip("xyz", (3, 4, 5), strict=True))
+def make_linear_field() -> xr.Dataset:
+    x, y, z = (xr.DataArray(np.linspace(0, 1, size), dims=axis) for axis, size in zip("xyz", (3, 4, 5), strict=True))
     field = (2 * x - 3 * y + z).assign_coords(x=x, y=y, z=z).assign_attrs(units="Pa")
     surface = (x + y).assign_coords(x=x, y=y)
     return xr.Dataset({"von_mises": field, "pressure": surface})
@@ -24,7 +24,7 @@ def linear_field() -> xr.Dataset:
 @given(start=points, end=points)
 def test_line_through_linear_field_is_exact(start, end) -> None:
     assume(not np.allclose(start, end))
-    cut = analysis.along_line(linear_field(), start, end, points=7)
+    cut = analysis.along_line(make_linear_field(), start, end, points=7)
     assert cut["von_mises"].values == pytest.approx((2 * cut["x"] - 3 * cut["y"] + cut["z"]).values, abs=1e-12)
     assert float(cut["distance"][-1]) == pytest.approx(np.linalg.norm(np.subtract(end, start)))
     assert cut["von_mises"].attrs["units"] == "Pa"
@@ -32,7 +32,7 @@ def test_line_through_linear_field_is_exact(start, end) -> None:
 
 @pytest.mark.parametrize(("axis", "plane_axes"), [("x", ("y", "z")), ("y", ("x", "z")), ("z", ("x", "y"))])
 def test_plane_through_linear_field_is_exact(axis: str, plane_axes: tuple[str, str]) -> None:
-    plane = analysis.in_plane(linear_field(), **{axis: 0.3})
+    plane = analysis.in_plane(make_linear_field(), **{axis: 0.3})
     assert plane["von_mises"].dims == plane_axes
     expected = 2 * plane["x"] - 3 * plane["y"] + plane["z"]
     assert np.allclose(plane["von_mises"], expected.transpose(*plane_axes))
@@ -40,17 +40,17 @@ def test_plane_through_linear_field_is_exact(axis: str, plane_axes: tuple[str, s
 
 
 def test_cut_contains_stresses_or_named_surface() -> None:
-    assert list(analysis.along_line(linear_field(), (0, 0, 0), (1, 1, 1))) == ["von_mises"]
-    line = analysis.along_line(linear_field(), (0, 0), (1, 1), variables="pressure", points=3)
+    assert list(analysis.along_line(make_linear_field(), (0, 0, 0), (1, 1, 1))) == ["von_mises"]
+    line = analysis.along_line(make_linear_field(), (0, 0), (1, 1), variables="pressure", points=3)
     assert line["pressure"].values == pytest.approx([0, 1, 2])
     assert "z" not in line.coords
-    assert list(analysis.in_plane(linear_field().drop_vars("von_mises"), y=0.5)) == ["pressure"]
+    assert list(analysis.in_plane(make_linear_field().drop_vars("von_mises"), y=0.5)) == ["pressure"]
 
 
 def test_plane_does_not_depend_on_order_of_positions() -> None:
-    shuffled = linear_field().isel(z=[3, 0, 4, 1, 2])
+    shuffled = make_linear_field().isel(z=[3, 0, 4, 1, 2])
     assert np.allclose(
-        analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(linear_field(), z=0.3)["von_mises"]
+        analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(make_linear_field(), z=0.3)["von_mises"]
     )
 
 
@@ -89,4 +89,4 @@ def test_line_value_equals_nearest_sample(case_result: xr.Dataset) -> None:
 )
 def test_invalid_line_or_plane_raises(call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        call(linear_field())
+        call(make_linear_field())

@@ -131,11 +131,11 @@ def test_errors_cover_refined_column_values(profile, cells):
     body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
     result = solve_with_errors(case, choose_grid(case, cells_x=cells))
-    refined = solve(case, stresses=False)
+    refined_result = solve(case, stresses=False)
     assert float(result.peak_pressure_error) < 0.06 * float(result.peak_pressure)
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last"):
-        tolerance = float(result[f"{name}_error"]) + float(refined[f"{name}_error"])
-        assert abs(float(result[name]) - float(refined[name])) <= tolerance, name
+        tolerance = float(result[f"{name}_error"]) + float(refined_result[f"{name}_error"])
+        assert abs(float(result[name]) - float(refined_result[name])) <= tolerance, name
 
 
 @pytest.mark.parametrize("case", [make_case(5 * HALF_WIDTH, profiles.Cylinder()), make_case(8 * HALF_WIDTH, LUNDBERG)])

@@ -13,22 +13,24 @@ STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 2 * 1.5e9 * 5e-3 / STEEL.plane_strain_modulus
 
 
-def pure_shear(values: xr.DataArray) -> xr.Dataset:
+def make_pure_shear(values: xr.DataArray) -> xr.Dataset:
     """Stresses of pure shear: the maximum shear equals the absolute value of the shear."""
     zero = xr.zeros_like(values)
     return xr.Dataset(dict.fromkeys(STRESSES, zero) | {"tau_yz": values})
 
 
-def gaussian_shear(x: np.ndarray, z: np.ndarray) -> xr.Dataset:
+def make_gaussian_shear(x: np.ndarray, z: np.ndarray) -> xr.Dataset:
     """A Gaussian shear stress with the maximum 3 at x = 0.3, z = 0.7."""
     x_term, z_term = xr.DataArray(x, dims="x", coords={"x": x}), xr.DataArray(z, dims="z", coords={"z": z})
     values = 3 * np.exp(-((x_term - 0.3) ** 2) - (z_term - 0.7) ** 2)
-    return pure_shear(values.expand_dims(y=[0.0]).transpose("x", "y", "z"))
+    return make_pure_shear(values.expand_dims(y=[0.0]).transpose("x", "y", "z"))
 
 
 @pytest.mark.parametrize("spacing", [0.3, 0.2, 0.1])
 def test_peak_between_samples_is_within_error(spacing: float) -> None:
-    peak = analysis.peak(gaussian_shear(np.arange(-1.0, 2.0, spacing), np.arange(0.0, 2.0, spacing)), "maximum_shear")
+    peak = analysis.peak(
+        make_gaussian_shear(np.arange(-1.0, 2.0, spacing), np.arange(0.0, 2.0, spacing)), "maximum_shear"
+    )
     assert abs(float(peak.peak_maximum_shear) - 3) <= float(peak.peak_maximum_shear_error) < 0.1
     assert float(peak.peak_maximum_shear_x) == pytest.approx(0.3, abs=0.1 * spacing)
     assert float(peak.peak_maximum_shear_z) == pytest.approx(0.7, abs=0.1 * spacing)
@@ -37,7 +39,7 @@ def test_peak_between_samples_is_within_error(spacing: float) -> None:
 
 @pytest.mark.parametrize(("z", "axis"), [(np.linspace(0.8, 2.0, 9), "z"), (np.linspace(0.0, 0.6, 9), "z")])
 def test_peak_at_outermost_depth_has_infinite_error(z: np.ndarray, axis: str) -> None:
-    peak = analysis.peak(gaussian_shear(np.linspace(-1.0, 2.0, 9), z), "maximum_shear")
+    peak = analysis.peak(make_gaussian_shear(np.linspace(-1.0, 2.0, 9), z), "maximum_shear")
     assert np.isinf(float(peak.peak_maximum_shear_error))
     assert f"edge of the points along {axis}" in peak.peak_maximum_shear_error.attrs["comment"]
 
@@ -45,7 +47,7 @@ def test_peak_at_outermost_depth_has_infinite_error(z: np.ndarray, axis: str) ->
 def test_peak_on_the_top_has_finite_error() -> None:
     z = np.linspace(0.0, 2.0, 11)
     values = xr.DataArray(np.exp(-z)[None, None], dims=("x", "y", "z"), coords={"x": [0.0], "y": [0.0], "z": z})
-    peak = analysis.peak(pure_shear(values), "maximum_shear")
+    peak = analysis.peak(make_pure_shear(values), "maximum_shear")
     assert float(peak.peak_maximum_shear_z) == 0.0
     assert float(peak.peak_maximum_shear_error) < 0.1
 
@@ -86,7 +88,7 @@ def test_peak_with_unresolved_ridge_has_infinite_error(spacing_x: float, spacing
     positions = np.arange(-1.0, 1.0, 0.02)
     ridge = np.sqrt(np.maximum(1 - (positions / 0.2) ** 2, 0.0))[:, None] * np.ones(20)
     pressure = xr.DataArray(ridge, coords={"x": positions, "y": 0.1 * np.arange(20)}, dims=("x", "y"))
-    field = gaussian_shear(np.arange(-0.9, 1.0, spacing_x), np.arange(0.0, 2.0, spacing_z)).rename(
+    field = make_gaussian_shear(np.arange(-0.9, 1.0, spacing_x), np.arange(0.0, 2.0, spacing_z)).rename(
         x="x_field", y="y_field"
     )
     peak = analysis.peak(field.assign(pressure=pressure), "maximum_shear")
@@ -95,7 +97,7 @@ def test_peak_with_unresolved_ridge_has_infinite_error(spacing_x: float, spacing
     assert f"m apart along {axis}, the pressure varies within 0.2 m: take at most 0.1 m" in comment
 
 
-def stress_beside_narrow_peak(point_x: np.ndarray) -> xr.Dataset:
+def make_stress_beside_narrow_peak(point_x: np.ndarray) -> xr.Dataset:
     """A uniform pressure with a peak 0.1 wide at x = 5; the maximum of the stress is at x = 0.3."""
     positions = np.arange(-2.0, 6.0, 0.02)
     axial_pressure = 1.0 + np.sqrt(np.maximum(1 - ((positions - 5.0) / 0.1) ** 2, 0.0))
@@ -103,18 +105,18 @@ def stress_beside_narrow_peak(point_x: np.ndarray) -> xr.Dataset:
         axial_pressure[:, None] * np.ones(40), coords={"x": positions, "y": 0.1 * np.arange(40)}, dims=("x", "y")
     )
     x = np.concatenate([np.arange(-1.0, 1.5, 0.3), point_x])
-    return gaussian_shear(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressure)
+    return make_gaussian_shear(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressure)
 
 
 @pytest.mark.parametrize("x", [np.array([2.0, 3.0]), np.concatenate([[2.0], np.arange(4.8, 5.2, 0.04)])])
 def test_peak_away_from_narrow_pressure_has_finite_error(x: np.ndarray) -> None:
     """The narrow peak lies outside the points, or the points at the peak are dense."""
-    peak = analysis.peak(stress_beside_narrow_peak(x), "maximum_shear")
+    peak = analysis.peak(make_stress_beside_narrow_peak(x), "maximum_shear")
     assert abs(float(peak.peak_maximum_shear) - 3) <= float(peak.peak_maximum_shear_error) < 0.1
 
 
 def test_coarse_points_at_narrow_pressure_have_infinite_error() -> None:
-    peak = analysis.peak(stress_beside_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
+    peak = analysis.peak(make_stress_beside_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
     assert np.isinf(float(peak.peak_maximum_shear_error))
 
 
@@ -128,12 +130,12 @@ def test_peak_with_singular_pressure_has_infinite_error() -> None:
 
 def test_peak_of_range_over_cycle_raises() -> None:
     with pytest.raises(InvalidInputError, match="orthogonal"):
-        analysis.peak(gaussian_shear(np.arange(3.0), np.arange(3.0)), "orthogonal_shear_range")
+        analysis.peak(make_gaussian_shear(np.arange(3.0), np.arange(3.0)), "orthogonal_shear_range")
 
 
 def test_peak_does_not_depend_on_order_of_points() -> None:
     z = np.linspace(0.0, 2.0, 9)
-    full_stresses, edge_stresses = (gaussian_shear(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
+    full_stresses, edge_stresses = (make_gaussian_shear(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
     for stresses in (full_stresses, edge_stresses):
         unsorted_peak = analysis.peak(stresses, "maximum_shear")
         rolled_peak = analysis.peak(stresses.isel(z=np.roll(np.arange(stresses.sizes["z"]), 2)), "maximum_shear")

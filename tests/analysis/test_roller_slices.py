@@ -170,11 +170,11 @@ def test_errors_of_study_case_exist_on_original_cells(tmp_path) -> None:
 
 
 def test_slices_of_cut_results_have_no_error_estimate(case_result: xr.Dataset) -> None:
-    refined = solve(CASES["straight, flush with free ends"], stresses=False, accuracy=0.05)
+    refined_result = solve(CASES["straight, flush with free ends"], stresses=False, accuracy=0.05)
     results = {
         "given cells": case_result,
-        "cut": refined.sel(x=slice(0.5e-3, None)),
-        "half": refined.sel(y=slice(0, None)),
+        "cut": refined_result.sel(x=slice(0.5e-3, None)),
+        "half": refined_result.sel(y=slice(0, None)),
     }
     for description, result in results.items():
         table = analysis.slices(result, 4)
@@ -185,7 +185,7 @@ def test_slices_of_cut_results_have_no_error_estimate(case_result: xr.Dataset) -
     for name, array in analysis.slices(case_result, 4).data_vars.items():
         if name not in ("position", "width"):
             assert array.attrs[ERROR_KIND] == NOT_ESTIMATED, name
-    refined_slices = analysis.slices(refined, 4)
+    refined_slices = analysis.slices(refined_result, 4)
     assert all(refined_slices[name].attrs[ERROR_KIND] == ESTIMATED for name in ("axial_pressure", "normal_load"))
 
 

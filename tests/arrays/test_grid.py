@@ -16,13 +16,13 @@ Y_RANGE = (-1.0, 1.0)
 RATIOS = st.lists(st.floats(0.3, 3.3), min_size=1, max_size=30)
 
 
-def edges_of(ratios: list[float]) -> list[float]:
+def compute_edges(ratios: list[float]) -> list[float]:
     return np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios]))).tolist()
 
 
 @given(ratios=RATIOS)
 def test_cells_tile_range(ratios: list[float]) -> None:
-    edges = np.array(edges_of(ratios))
+    edges = np.array(compute_edges(ratios))
     grid = Grid.from_edges(edges, Y_RANGE, 4)
     assert np.allclose(grid.x_edges, edges, rtol=1e-12)
     assert grid.x_edges[0] == grid.x_range[0]
@@ -36,7 +36,7 @@ def test_cells_tile_range(ratios: list[float]) -> None:
 
 @given(ratios=RATIOS)
 def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
-    edges = edges_of(ratios)
+    edges = compute_edges(ratios)
     grid, equal_grid = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
     assert grid == equal_grid
     assert hash(grid) == hash(equal_grid)
@@ -47,7 +47,7 @@ def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
 @given(ratios=RATIOS)
 def test_coarsened_grid_keeps_alternate_edges(ratios: list[float]) -> None:
     """Coarsened cells may differ by more than the limit of given cells."""
-    grid = Grid.from_edges(edges_of(ratios), Y_RANGE, 4)
+    grid = Grid.from_edges(compute_edges(ratios), Y_RANGE, 4)
     coarsened = grid.coarsened()
     assert coarsened.cells_y == 2
     assert coarsened.x_range == grid.x_range

@@ -57,7 +57,7 @@ UNCHANGED_NAME_FUNCTIONS = {"normalized", "single_case", "measure", "positions",
 """Functions whose result has the variables of their argument, possibly in other units."""
 
 
-def dataset_functions() -> dict[str, Callable[..., object]]:
+def list_dataset_functions() -> dict[str, Callable[..., object]]:
     """Public functions that return labelled data, by name."""
     packages: list[ModuleType] = [
         cs,
@@ -86,10 +86,10 @@ def dataset_functions() -> dict[str, Callable[..., object]]:
     }
 
 
-FUNCTIONS = dataset_functions()
+FUNCTIONS = list_dataset_functions()
 
 
-def as_dataset(public_object: xr.Dataset | xr.DataArray) -> xr.Dataset:
+def make_dataset(public_object: xr.Dataset | xr.DataArray) -> xr.Dataset:
     if isinstance(public_object, xr.Dataset):
         return public_object
     return (
@@ -234,7 +234,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     }
     for name in FUNCTIONS.keys() - returned_values.keys():
         returned_values[name] = FUNCTIONS[name](strip if name == "window_remainder" else case_result)  # type: ignore[assignment]
-    return {name: as_dataset(value) for name, value in returned_values.items()}
+    return {name: make_dataset(value) for name, value in returned_values.items()}
 
 
 def test_every_public_function_has_a_result(returned_datasets: Returned) -> None:

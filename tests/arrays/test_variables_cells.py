@@ -46,9 +46,9 @@ def test_dimension_order_does_not_matter() -> None:
 
 
 def test_uniform_cells_have_no_width_coordinate() -> None:
-    uniform = Grid(x_range=(0.0, 1.5), y_range=(-1.0, 1.0), cells_x=6, cells_y=4)
-    assert cell_coordinates(uniform) == {}
-    array = xr.DataArray(np.ones((6, 4)), coords={"x": uniform.x, "y": uniform.y}, dims=("x", "y"))
+    uniform_grid = Grid(x_range=(0.0, 1.5), y_range=(-1.0, 1.0), cells_x=6, cells_y=4)
+    assert cell_coordinates(uniform_grid) == {}
+    array = xr.DataArray(np.ones((6, 4)), coords={"x": uniform_grid.x, "y": uniform_grid.y}, dims=("x", "y"))
     assert labelled_cells("p", array)[1].uniform
 
 

@@ -146,12 +146,12 @@ def test_inputs_of_contact_law_and_measured_profile_are_converted() -> None:
     assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
 
 
-def lazy_array(value: float) -> da.Array:
+def make_lazy_array(value: float) -> da.Array:
     """Return a number as a lazy array, as in a file opened with chunks."""
     return da.from_array(np.array(value))
 
 
-def scalar(value: object, units: str | None = None) -> xr.DataArray:
+def make_scalar(value: object, units: str | None = None) -> xr.DataArray:
     return xr.DataArray(value, attrs={} if units is None else {"units": units})
 
 
@@ -178,17 +178,17 @@ def case_with(**parameters) -> Case:
 def test_scalar_argument_is_converted(name: str) -> None:
     read_argument, value, units, si_value = SCALARS[name]
     for argument in (
-        scalar(value, units),
-        scalar(si_value),
+        make_scalar(value, units),
+        make_scalar(si_value),
         np.array(si_value),
-        scalar(lazy_array(si_value)),
-        scalar(lazy_array(value), units),
+        make_scalar(make_lazy_array(si_value)),
+        make_scalar(make_lazy_array(value), units),
     ):
         argument_value = read_argument(argument)
         assert type(argument_value) is float
         assert argument_value == pytest.approx(si_value, rel=1e-15)
     with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
-        read_argument(scalar(value, "furlong"))
+        read_argument(make_scalar(value, "furlong"))
     assert len(str(caught.value)) < 200
 
 
@@ -202,8 +202,8 @@ def test_messages_do_not_compute_lazy_arrays() -> None:
     unevaluated_array = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
     for value, type_name in (
         (unevaluated_array, "Array"),
-        (scalar(unevaluated_array, "N"), "DataArray"),
-        (scalar(unevaluated_array).expand_dims(x=3), ""),
+        (make_scalar(unevaluated_array, "N"), "DataArray"),
+        (make_scalar(unevaluated_array).expand_dims(x=3), ""),
     ):
         with pytest.raises(InvalidInputError, match=rf"case = lazy {type_name}.*type float64: must be a Case"):
             solve(value)
@@ -215,26 +215,26 @@ def test_result_scalar_is_accepted_as_load() -> None:
 
 
 def test_study_converts_scalars_with_units() -> None:
-    base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
-    study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
+    base = {"young": make_scalar(210, "GPa"), "poisson": 0.3, "radius": make_scalar(5, "mm"), "roller_length": 1e-3}
+    study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [make_scalar(1500, "MPa"), 1e9]})
     assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
     with pytest.raises(InvalidInputError, match=r"young.attrs\['units'\] = 'mm'"):
-        Study(name="a", base={"young": scalar(210, "mm")})
+        Study(name="a", base={"young": make_scalar(210, "mm")})
 
 
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        (scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
+        (make_scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
         (np.ones(3), "ndarray of shape (3,) and type float64"),
-        (scalar(-5.0, "mm"), "-5.0 mm"),
+        (make_scalar(-5.0, "mm"), "-5.0 mm"),
         (np.float64(-1.0), "-1.0"),
-        (scalar(True), "True"),
-        (scalar("a"), "'a'"),
+        (make_scalar(True), "True"),
+        (make_scalar("a"), "'a'"),
         (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
         ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
-        (scalar(lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
-        (scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
+        (make_scalar(make_lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
+        (make_scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
         (xr.Dataset, repr(xr.Dataset)),
         (da.Array, repr(da.Array)),
     ],

@@ -13,7 +13,7 @@ GROUPS = {"length_over_a": 45.0, "e_over_a": 0.8, "crown": 0.2}
 TILTED = GROUPS | {"tilt_ratio": 0.6, "poisson": 0.25}
 
 
-def material_and_scales(groups: dict[str, float]) -> tuple[cs.Material, float, float]:
+def compute_material_and_scales(groups: dict[str, float]) -> tuple[cs.Material, float, float]:
     """Material, half-width and length of the roller."""
     material = cs.Material(210e9, groups.get("poisson", 0.3))
     half_width = 2 * PRESSURE * RADIUS / material.plane_strain_modulus
@@ -22,7 +22,7 @@ def material_and_scales(groups: dict[str, float]) -> tuple[cs.Material, float, f
 
 def solve_groups(groups: dict[str, float], load_factor: float = 1.0, **options: object) -> xr.Dataset:
     """Roller at a multiple of the load of the Hertz pressure."""
-    material, a, length = material_and_scales(groups)
+    material, a, length = compute_material_and_scales(groups)
     distance = groups["e_over_a"] * a
     case = cs.Case(
         body=cs.FiniteLengthSpace(length=length + 2 * distance, material=material),
@@ -38,7 +38,7 @@ def solve_groups(groups: dict[str, float], load_factor: float = 1.0, **options: 
 @pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
 def test_atlas_errors_cover_a_solved_roller(groups) -> None:
     contact, result = solve_groups(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)
-    _, half_width, length = material_and_scales(groups)
+    _, half_width, length = compute_material_and_scales(groups)
     mean_load = contact["normal_load"] * half_width / length
     expected = {
         "peak_pressure_ratio": contact["peak_pressure"] / PRESSURE,
@@ -59,7 +59,7 @@ def test_atlas_stiffness_equals_the_slope_of_loads(groups) -> None:
     slope = (high_load_result["normal_load"] - low_load_result["normal_load"]) / (
         high_load_result["approach"] - low_load_result["approach"]
     )
-    (material, _, length), result = material_and_scales(groups), cs.atlas(**groups)
+    (material, _, length), result = compute_material_and_scales(groups), cs.atlas(**groups)
     error = float(result["stiffness_ratio"] - slope / (material.plane_strain_modulus * length))
     assert abs(error) <= float(result["stiffness_ratio_error"])
 

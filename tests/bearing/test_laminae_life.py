@@ -115,9 +115,11 @@ def test_roller_ratings_agree_with_the_bearing_rating() -> None:
     assert mean_load / turning_mean == pytest.approx(0.378, abs=0.002)
     assert mean_load / standing_mean == pytest.approx(0.364, abs=0.002)
     rating, count = 50e3, 14
-    inner, outer = roller_ratings(rating, count, 0.18)
+    inner_rating, outer_rating = roller_ratings(rating, count, 0.18)
     max_load = rating / (count * mean_load)
-    life = ((turning_mean * max_load / inner) ** 4.5 + (standing_mean * max_load / outer) ** 4.5) ** (-8 / 9)
+    life = ((turning_mean * max_load / inner_rating) ** 4.5 + (standing_mean * max_load / outer_rating) ** 4.5) ** (
+        -8 / 9
+    )
     assert life == pytest.approx(0.83**-4, rel=0.02)
 
 

@@ -21,7 +21,7 @@ ROLLER = Roller(radius=5e-3, length=10e-3)
 CASE = Case(body=BODY, roller=ROLLER, load=5000.0)
 
 
-def total_load(result) -> float:
+def sum_slice_loads(result) -> float:
     step = float(result["x"][1] - result["x"][0])
     return float(result["load_per_length"].sum()) * step
 
@@ -34,7 +34,7 @@ def total_load(result) -> float:
 )
 def test_slice_loads_sum_to_load(load: float, tilt: float, slices: int, profile) -> None:
     result = slice_model(Case(body=BODY, roller=replace(ROLLER, profile=profile), load=load), slices=slices, tilt=tilt)
-    assert total_load(result) == pytest.approx(load, rel=1e-9)
+    assert sum_slice_loads(result) == pytest.approx(load, rel=1e-9)
     assert result.sizes == {"x": slices}
     assert float(result["load_per_length"].min()) >= 0
 
@@ -110,9 +110,9 @@ def test_pressure_of_taper_is_larger_at_thin_end() -> None:
 
 def test_slice_model_of_crowned_roller_approximates_solved_contact(steel_case: Case) -> None:
     """Approach and mid-length pressure are within 8 % of the solved contact; the end pressure is a fifth too low."""
-    solved, model = solve(steel_case, stresses=False), slice_model(steel_case, slices=40)
-    assert float(model["approach"]) == pytest.approx(float(solved["approach"]), rel=0.08)
-    section_maxima = solved["pressure"].max("y")
+    contact_result, model = solve(steel_case, stresses=False), slice_model(steel_case, slices=40)
+    assert float(model["approach"]) == pytest.approx(float(contact_result["approach"]), rel=0.08)
+    section_maxima = contact_result["pressure"].max("y")
     assert float(model["pressure"].interp(x=2e-3)) == pytest.approx(float(section_maxima.interp(x=2e-3)), rel=0.05)
     assert float(model["pressure"][0]) < 0.85 * float(section_maxima.interp(x=float(model["x"][0])))
 

@@ -89,9 +89,9 @@ def test_inverse_returns_approach_and_tilt(short_law: ContactLaw) -> None:
 
 
 def test_mirrored_tilts_have_equal_loads(short_law: ContactLaw) -> None:
-    tilted, mirrored = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
-    np.testing.assert_allclose(tilted.normal_load, mirrored.normal_load, rtol=1e-9)
-    np.testing.assert_allclose(tilted.moment, -mirrored.moment, rtol=1e-9)
+    tilted_contact, mirrored_contact = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
+    np.testing.assert_allclose(tilted_contact.normal_load, mirrored_contact.normal_load, rtol=1e-9)
+    np.testing.assert_allclose(tilted_contact.moment, -mirrored_contact.moment, rtol=1e-9)
 
 
 def test_reopened_law_is_identical(short_law: ContactLaw, tmp_path) -> None:

@@ -12,7 +12,7 @@ from contactstudy.bearing import ContactLaw, Raceways
 ARM = 1e-3
 
 
-def spring_law(stiffness: float, arm: float = ARM) -> ContactLaw:
+def make_spring_law(stiffness: float, arm: float = ARM) -> ContactLaw:
     """Contact law of linear springs on both sides of mid-length."""
     approach, tilt = np.geomspace(5e-7, 2e-5, 9), np.linspace(-5e-4, 5e-4, 9)
     delta, theta = np.meshgrid(approach, tilt, indexing="ij")
@@ -47,7 +47,7 @@ def test_compliances_of_raceways_add_up(short_law: ContactLaw) -> None:
 
 
 def test_raceways_of_springs_equal_springs_in_series() -> None:
-    raceways = Raceways(spring_law(2e7), spring_law(6e7))
+    raceways = Raceways(make_spring_law(2e7), make_spring_law(6e7))
     motion = raceways.at(8e-6, 4e-4)
     assert float(motion.inner_approach) == pytest.approx(6e-6, rel=2e-2)
     assert float(motion.normal_load) == pytest.approx(1.5e7 * 8e-6, rel=2e-2)
@@ -67,7 +67,7 @@ def test_raceways_broadcast_arguments(short_law: ContactLaw) -> None:
 
 
 def test_stiffness_of_raceways_equals_difference_quotient(short_law: ContactLaw) -> None:
-    raceways, delta = Raceways(short_law, spring_law(4e7)), 2.5e-6
+    raceways, delta = Raceways(short_law, make_spring_law(4e7)), 2.5e-6
     step = 1e-3 * delta
     motion = raceways.at([delta - step, delta, delta + step], 3e-4)
     slope = float(motion.normal_load[2] - motion.normal_load[0]) / (2 * step)
@@ -79,6 +79,6 @@ def test_argument_outside_table_raises(short_law: ContactLaw) -> None:
     with pytest.raises(InvalidInputError, match="approach = 2e-05: must be in the tables of both"):
         raceways.at(2e-5)
     with pytest.raises(InvalidInputError, match="approach, tilt = "):
-        Raceways(short_law, spring_law(1e12)).at(8e-6)
+        Raceways(short_law, make_spring_law(1e12)).at(8e-6)
     with pytest.raises(InvalidInputError, match="outer"):
         Raceways(short_law, short_law.table)  # type: ignore[arg-type]

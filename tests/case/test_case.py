@@ -212,12 +212,12 @@ def test_radii_without_a_gap_are_rejected(first_radius, second_radius, message: 
 def test_roller_ends_are_symmetric_within_rounding() -> None:
     """75 cells on 0.6 mm have midpoints at 0.1 and 0.5 mm, at the ends of the roller."""
     grid = Grid(x_range=(0.0, 0.6e-3), y_range=(-1e-4, 1e-4), cells_x=75, cells_y=4)
-    for profile, ends in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
+    for profile, end_columns in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
         roller = Roller(radius=5e-3, length=0.4e-3, profile=profile)
         case = Case(body=FiniteLengthSpace(length=0.6e-3, material=STEEL), roller=roller, max_pressure=1.5e9)
         gap = case.gap(grid)
         np.testing.assert_allclose(gap, gap[::-1])
-        assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == ends
+        assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == end_columns
 
 
 @pytest.mark.parametrize("body", [FiniteLengthSpace(length=10e-3, material=STEEL), QuarterSpace(material=STEEL)])

@@ -37,7 +37,7 @@ from contactstudy.case.magnitudes import list_unusual_magnitudes
 from contactstudy.cli import main
 from contactstudy.heat import ThermalProperties
 from contactstudy.study import Study, run_study
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 STEEL = Material(206e9, 0.3)
@@ -166,7 +166,7 @@ def test_solve_warns_once_at_the_line_of_the_call() -> None:
 def test_plan_and_run_contain_the_warning(tmp_path: Path, capsys) -> None:
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
     assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 contacts)",)
-    (tmp_path / "small.toml").write_text(as_toml(study))
+    (tmp_path / "small.toml").write_text(format_toml(study))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert main(["plan", str(tmp_path / "small.toml"), "--out", str(tmp_path / "results")]) == 0

@@ -23,7 +23,7 @@ from contactstudy.verification import closed_forms as ref
 from contactstudy.verification.problems import LINE_LOAD
 
 
-def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
+def make_sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
     centres = window * (2 * (np.arange(cells) + 0.5) / cells - 1)
     return xr.DataArray(
         0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
@@ -34,7 +34,7 @@ def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
     """No cell centre lies at the centre of the contact, unlike in the checks of the suite."""
     cells = 64
     radius, peak, _ = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
-    contact = solve_contact(half_space, sphere_gap(cells), load=4 / 3)
+    contact = solve_contact(half_space, make_sphere_gap(cells), load=4 / 3)
     area = float((contact["pressure"] > 0).sum()) * (3 / cells) ** 2
     assert np.sqrt(area / np.pi) == pytest.approx(radius, rel=2e-2)
     x, y = contact["x"].values[:, None], contact["y"].values
@@ -46,8 +46,8 @@ def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
 def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     contact = solve_contact(short_body, cylinder_gap(8.0, (96, 48)), load=8 * LINE_LOAD)
     assert bool(contact["converged"])
-    total = float(contact["pressure"].sum()) * (8 / 96) * (4 / 48)
-    assert total == pytest.approx(8 * LINE_LOAD, rel=1e-12)
+    total_load = float(contact["pressure"].sum()) * (8 / 96) * (4 / 48)
+    assert total_load == pytest.approx(8 * LINE_LOAD, rel=1e-12)
     assert abs(float(contact["load_error"])) < 1e-10
     assert float(contact["penetration_error"]) < 3e-6
     assert float(contact["open_pressure_error"]) == 0.0
@@ -110,19 +110,19 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
     coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
     assert np.allclose(uncoupled["traction_y"], 0.4 * uncoupled["pressure"])
 
-    def centre(contact: xr.Dataset) -> float:
+    def select_centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
 
-    assert abs(centre(uncoupled)) < 1e-6
+    assert abs(select_centre(uncoupled)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
-    assert -0.2 < centre(coupled) < -0.02
+    assert -0.2 < select_centre(coupled) < -0.02
     assert bool(coupled["converged"])
     assert float(coupled["penetration_error"]) < 1e-6
 
 
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
-    gap = sphere_gap(48)
+    gap = make_sphere_gap(48)
     uncoupled = solve_contact(body, gap, load=4 / 3, friction=0.3)
     coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
     assert np.abs(uncoupled["pressure"] - coupled["pressure"]).max() < 1e-5
@@ -130,7 +130,7 @@ def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> Non
 
 def test_early_stop_warns_and_is_not_converged(half_space: HalfSpace) -> None:
     with pytest.warns(ConvergenceWarning, match="max_iterations"):
-        contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
+        contact = solve_contact(half_space, make_sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
     assert not bool(contact["converged"])
 
 
@@ -138,7 +138,7 @@ def test_contact_at_window_edge_raises_error(
     half_space: HalfSpace, short_body: FiniteLengthSpace, cylinder_gap
 ) -> None:
     with pytest.raises(WindowError, match=r"y_min.*widen"):
-        solve_contact(half_space, sphere_gap(32, window=0.8), load=4 / 3)
+        solve_contact(half_space, make_sphere_gap(32, window=0.8), load=4 / 3)
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (32, 32), window=0.9), load=8 * LINE_LOAD)
 
@@ -165,13 +165,13 @@ def solve_with_settings(
     ],
 )
 def test_invalid_arguments_raise_error(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
-    arguments = {"body": half_space, "gap": sphere_gap(16), "load": 1.0} | change
+    arguments = {"body": half_space, "gap": make_sphere_gap(16), "load": 1.0} | change
     with pytest.raises(InvalidInputError, match=message):
         solve_with_settings(**arguments)  # type: ignore[arg-type]
 
 
 def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
-    gap = sphere_gap(16)
+    gap = make_sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
         solve_contact(half_space, gap.where(gap > 0.1), load=1.0)
     with pytest.raises(InvalidInputError, match=r"xarray\.DataArray"):

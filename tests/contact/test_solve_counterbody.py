@@ -29,15 +29,17 @@ from contactstudy import (
 from contactstudy.bodies.models import Counterbody
 from contactstudy.contact import ContactSettings
 from contactstudy.verification.problems import on_cells
-from tests.closed_forms import sliding_line
-from tests.reference_line import line_slope
+from tests.closed_forms import solve_sliding_line_contact
+from tests.reference_line import compute_line_slope
 
 STEEL, ALUMINIUM = Material(210e9, 0.3), Material(70e9, 0.33)
 HALF_WIDTH = 130e-6
 FILLET = profiles.Cylinder(fillet_radius=2 * HALF_WIDTH)
 
 
-def ellipsoid_gap(body, counterbody: Counterbody, cells: int, length: float, radius_x: float = 40e-3) -> xr.DataArray:
+def make_ellipsoid_gap(
+    body, counterbody: Counterbody, cells: int, length: float, radius_x: float = 40e-3
+) -> xr.DataArray:
     """Gap of an ellipsoid over the first `length` of a body, infinite outside the counterbody."""
     grid = Grid(x_range=(0.0, length), y_range=(-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells_x=cells, cells_y=48)
     x = grid.x[:, None]
@@ -88,18 +90,18 @@ def test_equal_half_spaces_do_not_couple_friction():
 def test_friction_moves_contact_of_different_materials(body_material: Material, roller_material: Material | None):
     """Bodies with mirrored ends are in plane strain; the sign of the centre depends on the sign of the coupling."""
     friction, radius, load = 0.5, 1.0, 2e-4 * body_material.plane_strain_modulus
-    exact_line = sliding_line(load, radius, friction, body_material, roller_material)
+    exact_line = solve_sliding_line_contact(load, radius, friction, body_material, roller_material)
     window_scale = exact_line.half_width + abs(exact_line.centre)
     gap = on_cells(
         lambda x, y: y**2 / (2 * radius) + 0 * x, (0.0, 1.0), (-1.5 * window_scale, 1.5 * window_scale), (4, 256)
     )
 
-    def plane_strain_body(material: Material) -> FiniteLengthSpace:
+    def make_plane_strain_body(material: Material) -> FiniteLengthSpace:
         return FiniteLengthSpace(length=1.0, material=material, model="mirror")
 
-    counterbody = None if roller_material is None else Counterbody(plane_strain_body(roller_material))
+    counterbody = None if roller_material is None else Counterbody(make_plane_strain_body(roller_material))
     computed = solve_contact(
-        plane_strain_body(body_material),
+        make_plane_strain_body(body_material),
         gap,
         load=load,
         friction=friction,
@@ -158,7 +160,7 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
         xr.DataArray(transferred_load, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
     )
     slopes = [
-        line_slope(variant, surface_pressure, variant.length)
+        compute_line_slope(variant, surface_pressure, variant.length)
         for variant, surface_pressure in zip((body, counterbody), surface_pressures, strict=True)
     ]
     gap = gap - sum(slopes) * gap.x
@@ -182,7 +184,7 @@ def test_exchanged_bodies_have_equal_pressure_and_approach(start: int):
     short_counterbody = Counterbody(short_body, start * HALF_WIDTH)
     long_counterbody = Counterbody(long_body, -start * HALF_WIDTH)
     columns = slice(4 * start, 4 * start + 24)
-    gap = ellipsoid_gap(long_body, short_counterbody, 32, long_body.length)
+    gap = make_ellipsoid_gap(long_body, short_counterbody, 32, long_body.length)
     exchanged_gap = gap.isel(x=columns).assign_coords(x=gap.x[columns] - start * HALF_WIDTH)
     settings = ContactSettings(coupled=True, tolerance=1e-8)
     contact = solve_contact(long_body, gap, load=100.0, friction=0.4, counterbody=short_counterbody, settings=settings)
@@ -331,6 +333,6 @@ def test_counterbody_requires_position():
 
 
 def test_invalid_counterbody_raises_error(short_body):
-    gap = ellipsoid_gap(short_body, Counterbody(short_body), 16, 8.0)
+    gap = make_ellipsoid_gap(short_body, Counterbody(short_body), 16, 8.0)
     with pytest.raises(InvalidInputError, match="counterbody"):
         solve_contact(short_body, gap, load=1.0, counterbody=STEEL)

@@ -7,18 +7,26 @@ import pytest
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, solve, solve_contact
-from tests.contact.refinement.rollers import CASES, HALF_SPACE, HALF_WIDTH, RADIUS, SHORT, SHORT_ELASTIC, finite_body
+from tests.contact.refinement.rollers import (
+    CASES,
+    HALF_SPACE,
+    HALF_WIDTH,
+    RADIUS,
+    SHORT,
+    SHORT_ELASTIC,
+    make_finite_body,
+)
 
 
-@pytest.mark.parametrize("body", [HALF_SPACE, finite_body(SHORT)], ids=["half", "finite"])
+@pytest.mark.parametrize("body", [HALF_SPACE, make_finite_body(SHORT)], ids=["half", "finite"])
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
     has_free_ends = isinstance(body, FiniteLengthSpace)
     kept_edges = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
-    uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * HALF_WIDTH, 2 * HALF_WIDTH), cells_x=64, cells_y=32)
-    graded = Grid.from_edges(uniform.x_edges[kept_edges], uniform.y_range, 32)
+    uniform_grid = Grid(x_range=(0.0, SHORT), y_range=(-2 * HALF_WIDTH, 2 * HALF_WIDTH), cells_x=64, cells_y=32)
+    graded_grid = Grid.from_edges(uniform_grid.x_edges[kept_edges], uniform_grid.y_range, 32)
     contacts = []
-    for grid in (graded, uniform):
+    for grid in (graded_grid, uniform_grid):
         is_inside = (
             (grid.x > 0) & (grid.x < SHORT)
             if has_free_ends
@@ -32,13 +40,15 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
     mid_pressures = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
     assert mid_pressures[0] == pytest.approx(mid_pressures[1], rel=5e-3)
     assert float(graded_contact.approach) == pytest.approx(float(uniform_contact.approach), rel=5e-3)
-    total = float((graded_contact.pressure * graded.widths[:, None]).sum()) * graded.dy
-    assert total == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
-    repeated_contact = solve_contact(body, initial_gap(graded_contact, graded), approach=float(graded_contact.approach))
+    total_load = float((graded_contact.pressure * graded_grid.widths[:, None]).sum()) * graded_grid.dy
+    assert total_load == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
+    repeated_contact = solve_contact(
+        body, make_initial_gap(graded_contact, graded_grid), approach=float(graded_contact.approach)
+    )
     assert float(repeated_contact["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
 
 
-def initial_gap(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
+def make_initial_gap(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
     """Initial gap of a contact, from the cells with a finite gap."""
     heights = np.where(np.isfinite(contact.gap.values), grid.y**2 / (2 * RADIUS), np.inf)
     return contact.gap.copy(data=heights)

@@ -24,7 +24,7 @@ def label_cells(grid: Grid, cells: np.ndarray) -> xr.DataArray:
 SPHERE_GAP = label_cells(GRID, (GRID.x[:, None] ** 2 + GRID.y**2) / (2 * RADIUS))
 
 
-def layer_operator(material: Material, thickness: float, grid: Grid) -> LinearOperator:
+def make_layer_operator(material: Material, thickness: float, grid: Grid) -> LinearOperator:
     """Displacement of the top of a layer on a rigid base, periodic with twice the window."""
     shape = (2 * grid.cells_x, 2 * grid.cells_y)
     k_x, k_y = np.fft.fftfreq(shape[0], grid.dx), np.fft.rfftfreq(shape[1], grid.dy)
@@ -61,7 +61,10 @@ def test_surface_operator_sums_two_bodies() -> None:
 def test_thin_layer_equals_winkler_foundation() -> None:
     thickness, approach, nu = 2e-6, 1e-6, POLYMER.poisson
     contact = solve_contact(
-        HalfSpace(material=POLYMER), SPHERE_GAP, approach=approach, surface=layer_operator(POLYMER, thickness, GRID)
+        HalfSpace(material=POLYMER),
+        SPHERE_GAP,
+        approach=approach,
+        surface=make_layer_operator(POLYMER, thickness, GRID),
     )
     stiffness = POLYMER.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / thickness
     assert float(contact.normal_load) == pytest.approx(np.pi * RADIUS * stiffness * approach**2, rel=2e-3)
@@ -71,14 +74,14 @@ def test_thin_layer_equals_winkler_foundation() -> None:
 def test_thick_layer_equals_half_space() -> None:
     load = 0.2
     contact = solve_contact(
-        HalfSpace(material=POLYMER), SPHERE_GAP, load=load, surface=layer_operator(POLYMER, 1e-3, GRID)
+        HalfSpace(material=POLYMER), SPHERE_GAP, load=load, surface=make_layer_operator(POLYMER, 1e-3, GRID)
     )
     hertz_pressure = (6 * load * POLYMER.plane_strain_modulus**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
     assert float(contact.pressure.max()) == pytest.approx(hertz_pressure, rel=3e-3)
 
 
 def test_invalid_operator_raises_error() -> None:
-    body, surface = HalfSpace(material=POLYMER), layer_operator(POLYMER, 1e-6, GRID)
+    body, surface = HalfSpace(material=POLYMER), make_layer_operator(POLYMER, 1e-6, GRID)
     with pytest.raises(InvalidInputError, match="surface"):
         solve_contact(body, SPHERE_GAP, load=1.0, surface=aslinearoperator(np.eye(3)))
     with pytest.raises(InvalidInputError, match="counterbody"):

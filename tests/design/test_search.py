@@ -105,12 +105,12 @@ def test_optimum_equals_a_brute_force_scan(install_measure) -> None:
 
 
 def test_search_excludes_infinite_measures_and_invalid_profiles(install_measure) -> None:
-    def singular_measure(drop: float, k1: float, case: Case) -> float:
+    def make_singular_measure(drop: float, k1: float, case: Case) -> float:
         if drop > 5e-5:
             raise InvalidInputError("profile", drop, "smaller")
         return np.inf if drop < 1e-5 else 1 + np.log10(drop / 1.5e-5) ** 2
 
-    install_measure(singular_measure)
+    install_measure(make_singular_measure)
     result = best_profile(CASE, make_profile, bounds=BOUNDS)
     assert float(result.optimum[0]) == pytest.approx(1.5e-5, rel=0.15)
     assert 0.9e-5 < float(result.flat_from[0]) <= float(result.flat_to[0]) < 5e-5

@@ -15,18 +15,18 @@ PAGES = sorted((ROOT / "docs" / "explanation").glob("*.md"))
 CODE = sorted((ROOT / "contactstudy").rglob("*.py"))
 
 
-def equation_numbers() -> list[str]:
+def list_equation_numbers() -> list[str]:
     """Numbers of all equations."""
     return list(chain.from_iterable(re.findall(r"\\tag\{(\w+)\}", page.read_text()) for page in PAGES))
 
 
-def uncited_equations() -> set[str]:
+def list_uncited_equations() -> set[str]:
     """Equations of derivations, marked as not evaluated in the code."""
     comments = chain.from_iterable(re.findall(r"<!-- docs only: ([\w, ]+) -->", page.read_text()) for page in PAGES)
     return set(chain.from_iterable(comment.split(", ") for comment in comments))
 
 
-def cited_equations() -> set[str]:
+def list_cited_equations() -> set[str]:
     """Equations that comments and docstrings of the package cite."""
     cited_numbers: set[str] = set()
     for path in CODE:
@@ -38,16 +38,16 @@ def cited_equations() -> set[str]:
 
 
 def test_equation_numbers_are_unique() -> None:
-    assert len(equation_numbers()) == len(set(equation_numbers()))
+    assert len(list_equation_numbers()) == len(set(list_equation_numbers()))
 
 
 def test_code_cites_all_evaluated_equations() -> None:
-    assert set(equation_numbers()) - cited_equations() == uncited_equations()
-    assert cited_equations() <= set(equation_numbers())
+    assert set(list_equation_numbers()) - list_cited_equations() == list_uncited_equations()
+    assert list_cited_equations() <= set(list_equation_numbers())
 
 
 @cache
-def identifiers() -> set[str]:
+def list_identifiers() -> set[str]:
     """Names, attributes, arguments and variables of Datasets in the package."""
     names: set[str] = set()
     for path in CODE:
@@ -72,4 +72,4 @@ def test_names_in_symbol_table_exist_in_code() -> None:
     quoted = chain.from_iterable(re.findall(r"`([^`]+)`", row) for row in rows)
     words = set(chain.from_iterable(re.findall(r"[A-Za-z_]\w*", name) for name in quoted))
     assert len(words) > 50
-    assert words - identifiers() == set()
+    assert words - list_identifiers() == set()

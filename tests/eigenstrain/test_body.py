@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from benchmarks.finite_elements.eigenstrain import residual_stress
+from benchmarks.finite_elements.eigenstrain import compute_residual_stress
 from contactstudy.bodies.material import Material
 from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grade_to_face, grow_edges
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
@@ -24,12 +24,12 @@ def make_rectangle_body() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
 
     def build_body(extent, x_range, z_range, cells=8, **settings):
         edges = []
-        for (low, high), (minimum, maximum) in zip((x_range, z_range), (extent, (0.0, np.inf)), strict=True):
+        for (low, high), (body_start, body_end) in zip((x_range, z_range), (extent, (0.0, np.inf)), strict=True):
             width = (high - low) / cells
             axis_edges = low + width * np.arange(-3, cells + 4)
-            edges.append(axis_edges[(axis_edges > minimum - 1e-9) & (axis_edges < maximum + 1e-9)])
-            edges[-1] = np.where(np.abs(edges[-1] - minimum) < 1e-9, minimum, edges[-1])
-            edges[-1] = np.where(np.abs(edges[-1] - maximum) < 1e-9, maximum, edges[-1])
+            edges.append(axis_edges[(axis_edges > body_start - 1e-9) & (axis_edges < body_end + 1e-9)])
+            edges[-1] = np.where(np.abs(edges[-1] - body_start) < 1e-9, body_start, edges[-1])
+            edges[-1] = np.where(np.abs(edges[-1] - body_end) < 1e-9, body_end, edges[-1])
         strain = np.zeros((6, edges[0].size - 1, edges[1].size - 1))
         axes_inside = [
             (axis_edges[:-1] >= low - 1e-9) & (axis_edges[1:] <= high + 1e-9)
@@ -60,7 +60,7 @@ def test_stress_between_free_ends_matches_finite_elements(make_rectangle_body, x
     body, strain = make_rectangle_body((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
     computed = body.solve(strain).stresses(x, z)
-    expected = residual_stress(2.0, (x_range, z_range), COMPONENTS, 0.3, x=x, z=z) * TEST_MATERIAL.shear_modulus
+    expected = compute_residual_stress(2.0, (x_range, z_range), COMPONENTS, 0.3, x=x, z=z) * TEST_MATERIAL.shear_modulus
     assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 

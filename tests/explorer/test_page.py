@@ -64,7 +64,7 @@ any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
 """Parameter of tests that read fields and status of a case."""
 
 
-def max_drawn_pressures(page: Page) -> tuple[float, float]:
+def compute_max_drawn_pressures(page: Page) -> tuple[float, float]:
     """Largest pressure drawn along the axis, and on the top."""
     axial_data = page.axial._lines[0].data["p"]
     (picture,) = page.surface_figures[0]._source.data["image"]
@@ -80,14 +80,14 @@ def test_page_has_choices_of_swept_parameters(page: Page) -> None:
 
 @any_source
 def test_figures_follow_chosen_case(page: Page) -> None:
-    initial_maxima = max_drawn_pressures(page)
+    initial_maxima = compute_max_drawn_pressures(page)
     assert ">1 GPa<" in page.table.object
     page.choices[0]["max_pressure"].value = 2
     assert ">1.5 GPa<" in page.table.object
-    assert max_drawn_pressures(page)[0] == pytest.approx(1.5 * initial_maxima[0], rel=0.05)
+    assert compute_max_drawn_pressures(page)[0] == pytest.approx(1.5 * initial_maxima[0], rel=0.05)
     assert page.study._marked.data["x"] == [1.5]
     page.units.value = True
-    assert max_drawn_pressures(page)[0] == pytest.approx(initial_maxima[0] / 1000, rel=0.05)
+    assert compute_max_drawn_pressures(page)[0] == pytest.approx(initial_maxima[0] / 1000, rel=0.05)
 
 
 def test_two_cases_share_colours(page: Page) -> None:

@@ -84,7 +84,7 @@ def server_port(folder: Path) -> Iterator[tuple[int, str]]:
             server.terminate()
 
 
-def request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
+def send_request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
     with closing(http.client.HTTPConnection("localhost", port, timeout=200)) as connection:
         connection.request("GET", path, headers=headers)
         response = connection.getresponse()
@@ -106,14 +106,14 @@ def test_server_requires_known_host_and_token(server_port: tuple[int, str]) -> N
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     allowed_hosts = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
     for host in allowed_hosts:
-        assert request(port, "/", Host=host, **cookie).status == 200, host
+        assert send_request(port, "/", Host=host, **cookie).status == 200, host
     for host in ("rebound.example", f"rebound.example:{port}", "localhost.example", "192.168.0.7", "", "[::1"):
         for path in ("/", f"/?token={token}", "/ws"):
-            assert request(port, path, Host=host, **cookie).status == 403, (host, path)
+            assert send_request(port, path, Host=host, **cookie).status == 403, (host, path)
     for headers in ({}, {"Cookie": f"contactstudy-{port}=wrong"}, {"Cookie": "other=1"}):
         for path in ("/", "/?token=wrong", "/ws", "/static/js/bokeh.min.js"):
-            assert request(port, path, Host=f"localhost:{port}", **headers).status == 403, (headers, path)
-    response = request(port, f"/?token={token}", Host=f"localhost:{port}")
+            assert send_request(port, path, Host=f"localhost:{port}", **headers).status == 403, (headers, path)
+    response = send_request(port, f"/?token={token}", Host=f"localhost:{port}")
     assert (response.status, response.headers["Location"]) == (302, "/")
     assert response.headers["Set-Cookie"].startswith(cookie["Cookie"])
     assert "HttpOnly" in response.headers["Set-Cookie"]
@@ -124,10 +124,10 @@ def test_websocket_requires_same_origin(server_port: tuple[int, str]) -> None:
     port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     for host, origin in (("localhost:9999", "http://rebound.example"), ("rebound.example", "http://rebound.example")):
-        assert request(port, "/ws", Host=host, Origin=origin, **cookie, **WEBSOCKET_HEADERS).status == 403
+        assert send_request(port, "/ws", Host=host, Origin=origin, **cookie, **WEBSOCKET_HEADERS).status == 403
     forwarded_headers = {"Host": "localhost:9999", **cookie}
-    page = request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
+    page = send_request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
     session = page.partition('"token":"')[2].partition('"')[0]
     protocol = {"Origin": "http://localhost:9999", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
-    assert request(port, "/ws", **forwarded_headers, **protocol, **WEBSOCKET_HEADERS).status == 101
-    assert request(port, "/ws", Host="localhost:9999", **protocol, **WEBSOCKET_HEADERS).status == 403
+    assert send_request(port, "/ws", **forwarded_headers, **protocol, **WEBSOCKET_HEADERS).status == 101
+    assert send_request(port, "/ws", Host="localhost:9999", **protocol, **WEBSOCKET_HEADERS).status == 403

@@ -63,10 +63,10 @@ def test_rotating_shear_has_constant_amplitude(cycle) -> None:
 def test_findley_plane_of_push_pull_equals_closed_form(cycle, wave) -> None:
     """The plane at angle t has the shear sin(2t)/2 and the normal stress (1 + cos(2t))/2, worst at tan(2t) = 1/k."""
     result = fatigue.findley(cycle(sigma_xx=wave), LIMITS)
-    k = LIMITS.findley_slope
-    angle = 0.5 * np.arctan2(1, k)
+    slope = LIMITS.findley_slope
+    angle = 0.5 * np.arctan2(1, slope)
     assert abs(float(result["findley_plane"].sel(axis="x"))) == pytest.approx(np.cos(angle), abs=1e-4)
-    assert float(result["findley"]) == pytest.approx(0.5 * (k + np.sqrt(1 + k**2)), rel=1e-9)
+    assert float(result["findley"]) == pytest.approx(0.5 * (slope + np.sqrt(1 + slope**2)), rel=1e-9)
     assert float(result["findley_shear"]) == pytest.approx(0.5 * np.sin(2 * angle), abs=1e-4)
 
 

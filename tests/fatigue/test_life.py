@@ -11,7 +11,7 @@ from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.fatigue import LifeExponents
 
 
-def orthogonal_shear(result: xr.Dataset) -> xr.DataArray:
+def compute_orthogonal_shear(result: xr.Dataset) -> xr.DataArray:
     return analysis.measure(result, "orthogonal_shear_amplitude")
 
 
@@ -28,7 +28,7 @@ def test_line_contact_risk_equals_the_integral(strip_result) -> None:
 def test_line_contact_life_exponent_is_four(strip_result, factor: float) -> None:
     """The load of a line contact is proportional to p0 squared, and a to p0, at constant roller length."""
     lives = []
-    for model in (fatigue.lundberg_palmgren, lambda result: fatigue.ioannides_harris(orthogonal_shear(result))):
+    for model in (fatigue.lundberg_palmgren, lambda result: fatigue.ioannides_harris(compute_orthogonal_shear(result))):
         base_result, loaded_result = strip_result(), strip_result(factor, factor)
         loaded_result = loaded_result.assign_coords(x_field=base_result["x_field"])
         lives.append(float(fatigue.relative_life(model(loaded_result), model(base_result))))
@@ -43,26 +43,27 @@ def test_point_contact_life_exponent_is_three(strip_result) -> None:
 
 
 def test_fatigue_limit_increases_relative_life(strip_result) -> None:
-    reference_risk = fatigue.ioannides_harris(orthogonal_shear(strip_result()), limit=0.2)
+    reference_risk = fatigue.ioannides_harris(compute_orthogonal_shear(strip_result()), limit=0.2)
     lower_result = strip_result(0.9, 0.9)
     lives = []
-    for limit in (0.0, 0.1, 0.2):
+    for stress_limit in (0.0, 0.1, 0.2):
         risks = [
-            fatigue.ioannides_harris(orthogonal_shear(contact), limit) for contact in (lower_result, strip_result())
+            fatigue.ioannides_harris(compute_orthogonal_shear(contact), stress_limit)
+            for contact in (lower_result, strip_result())
         ]
         lives.append(float(fatigue.relative_life(*risks)))
     assert lives[0] < lives[1] < lives[2]
-    zero_risk = fatigue.ioannides_harris(orthogonal_shear(lower_result), limit=0.3)
+    zero_risk = fatigue.ioannides_harris(compute_orthogonal_shear(lower_result), limit=0.3)
     assert float(zero_risk["risk"]) == 0.0
     assert np.isnan(zero_risk["mean_depth"]).all()
-    loaded_risk = fatigue.ioannides_harris(orthogonal_shear(strip_result(1.5, 1.5)), limit=0.3)
+    loaded_risk = fatigue.ioannides_harris(compute_orthogonal_shear(strip_result(1.5, 1.5)), limit=0.3)
     assert float(fatigue.relative_life(zero_risk, loaded_risk)) == np.inf
     assert np.isnan(float(fatigue.relative_life(zero_risk, zero_risk)))
     with pytest.raises(InvalidInputError, match=r"fatigue_limit = 0.2.*fatigue_limit = 0.3"):
         fatigue.relative_life(zero_risk, reference_risk)
     with pytest.raises(InvalidInputError, match="theory = Ioannides and Harris"):
         fatigue.relative_life(
-            fatigue.lundberg_palmgren(lower_result), fatigue.ioannides_harris(orthogonal_shear(lower_result))
+            fatigue.lundberg_palmgren(lower_result), fatigue.ioannides_harris(compute_orthogonal_shear(lower_result))
         )
 
 
@@ -95,7 +96,7 @@ def test_risk_error_includes_pressure_error(strip_result) -> None:
 
 @pytest.mark.parametrize(("first", "last"), [(0.1, 0.7), (0.1, 1.0), (0.3, 2.0), (0.4, 2.0), (0.2, 0.8)])
 def test_risk_error_covers_missing_depths(strip_result, first: float, last: float) -> None:
-    amplitude = orthogonal_shear(strip_result())
+    amplitude = compute_orthogonal_shear(strip_result())
     full_result = fatigue.ioannides_harris(amplitude)
     partial_result = fatigue.ioannides_harris(amplitude.sel(z=slice(first - 1e-9, last + 1e-9)))
     assert abs(float(partial_result["risk"] - full_result["risk"])) < float(partial_result["risk_error"])
@@ -107,7 +108,7 @@ def test_risk_error_of_few_positions_along_x_is_infinite(strip_result) -> None:
 
 
 def test_risk_of_utilisation_has_unit_of_length_power(strip_result) -> None:
-    utilisation = (orthogonal_shear(strip_result()) / 0.25).assign_attrs(units="1")
+    utilisation = (compute_orthogonal_shear(strip_result()) / 0.25).assign_attrs(units="1")
     assert fatigue.ioannides_harris(utilisation, 0.5)["risk"].attrs["units"] == "m**-0.333333"
 
 
@@ -138,7 +139,7 @@ def test_incomplete_passage_is_rejected(strip_result) -> None:
     shallow_result, deep_result = result.sel(z=slice(0.0, 0.45)), result.sel(z=slice(0.55, None))
     with pytest.raises(InvalidInputError, match="first or last y in sections with 1 of the risk"):
         fatigue.lundberg_palmgren(narrow_result)
-    for call in (fatigue.lundberg_palmgren, lambda risk: fatigue.ioannides_harris(orthogonal_shear(risk))):
+    for call in (fatigue.lundberg_palmgren, lambda risk: fatigue.ioannides_harris(compute_orthogonal_shear(risk))):
         with pytest.raises(InvalidInputError, match="first or last depth in sections with 1 of the risk"):
             call(shallow_result)
         with pytest.raises(InvalidInputError, match="first or last depth in sections with 1 of the risk"):
@@ -151,8 +152,8 @@ def test_risk_of_stresses_in_megapascals_is_equal(strip_result) -> None:
     converted_result = converted_result.assign_coords({"z": (1e3 * converted_result["z"]).assign_attrs(units="mm")})
     xr.testing.assert_allclose(fatigue.lundberg_palmgren(converted_result), fatigue.lundberg_palmgren(result))
     shear_in_pascals, shear_in_megapascals = (
-        orthogonal_shear(result),
-        (1e-6 * orthogonal_shear(result)).assign_attrs(units="MPa"),
+        compute_orthogonal_shear(result),
+        (1e-6 * compute_orthogonal_shear(result)).assign_attrs(units="MPa"),
     )
     xr.testing.assert_allclose(
         fatigue.ioannides_harris(shear_in_megapascals, 1e8), fatigue.ioannides_harris(shear_in_pascals, 1e8)
@@ -179,8 +180,8 @@ def test_risk_is_largest_at_the_roller_ends(case_result: xr.Dataset) -> None:
     result = fatigue.lundberg_palmgren(case_result)
     assert np.allclose(result["risk_density"], result["risk_density"][::-1], rtol=1e-3)
     # The risk is larger at the ends of the roller, over a fillet, than at mid-length.
-    middle = result["risk_density"].sel(x_field=0.26e-3, method="nearest")
-    assert float(result["risk_density"].max()) > 1.5 * float(middle)
+    middle_risk = result["risk_density"].sel(x_field=0.26e-3, method="nearest")
+    assert float(result["risk_density"].max()) > 1.5 * float(middle_risk)
 
 
 def test_risk_of_von_mises_stress_is_positive(case_result: xr.Dataset) -> None:
@@ -195,7 +196,7 @@ def test_units_follow_the_exponents(strip_result) -> None:
 
 
 def test_invalid_argument_raises(strip_result) -> None:
-    result, amplitude = strip_result(), orthogonal_shear(strip_result())
+    result, amplitude = strip_result(), compute_orthogonal_shear(strip_result())
     for call, message in (
         (lambda: fatigue.lundberg_palmgren(result.drop_vars("tau_yz")), "tau_yz is missing"),
         (lambda: fatigue.lundberg_palmgren(result.isel(z=[0, 1])), "three or more depths"),
@@ -222,12 +223,14 @@ def test_lundberg_palmgren_rejects_heavy_friction() -> None:
     shear = (passage * depth).expand_dims(x=[0.0, 1.0])
     with pytest.raises(InvalidInputError, match="Ioannides and Harris"):
         fatigue.lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
-    assert float(fatigue.ioannides_harris(orthogonal_shear(xr.Dataset({"tau_yz": shear})))["risk"]) > 0
+    assert float(fatigue.ioannides_harris(compute_orthogonal_shear(xr.Dataset({"tau_yz": shear})))["risk"]) > 0
 
 
 def test_point_values_are_marked_not_estimated(strip_result) -> None:
     result = strip_result()
-    computed = fatigue.lundberg_palmgren(result).merge(fatigue.ioannides_harris(orthogonal_shear(result))["mean_depth"])
+    computed = fatigue.lundberg_palmgren(result).merge(
+        fatigue.ioannides_harris(compute_orthogonal_shear(result))["mean_depth"]
+    )
     for name in ("risk_density", "shear_amplitude", "shear_depth", "mean_depth"):
         assert computed[name].attrs[ERROR_KIND] == NOT_ESTIMATED, name
     without_error = fatigue.lundberg_palmgren(result).drop_vars("risk_error")

@@ -73,10 +73,10 @@ def test_shakedown_stress_on_surface_equals_closed_form(line_contact, friction: 
 def test_limit_error_covers_difference_from_finer_positions(line_contact) -> None:
     fine_result = line_contact(0.2)
     coarse_result = fine_result.isel(y=slice(None, None, 4), z=slice(None, None, 4))
-    result, reference = fatigue.shakedown_limit(coarse_result), fatigue.shakedown_limit(fine_result)
+    result, fine_limits = fatigue.shakedown_limit(coarse_result), fatigue.shakedown_limit(fine_result)
     for name in ("shakedown_limit", "first_yield_limit"):
         error = float(result[f"{name}_error"])
-        assert abs(float(result[name] - reference[name])) < error < 0.1 * float(result[name])
+        assert abs(float(result[name] - fine_limits[name])) < error < 0.1 * float(result[name])
 
 
 def test_limit_error_of_shallow_depths_is_infinite(line_contact) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.finite_elements.shakedown import min_shear_yield_stress, point_positions
+from benchmarks.finite_elements.shakedown import list_point_positions, minimize_shear_yield_stress
 from contactstudy import (
     ConvergenceWarning,
     FiniteLengthSpace,
@@ -63,7 +63,7 @@ def test_short_body_has_a_lower_limit(line_contact_weaker_at_ends) -> None:
     assert in_plane_limits[1] * 1.01 < in_plane_limits[0] < rolling_limits[0]
 
 
-def sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
+def make_sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
     """Stresses of Hertz' frictionless sphere, half-width and largest pressure 1, at (x, z) positions."""
     edges = np.linspace(-1.2, 1.2, 49)
     x = (0.5 * (edges[1:] + edges[:-1]))[:, None] + (edges[1] - edges[0]) * ((np.arange(8) + 0.5) / 8 - 0.5)
@@ -79,13 +79,13 @@ def sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
 @pytest.mark.slow
 def test_limit_of_sphere_equals_published_value() -> None:
     """The ratio p0 / k is 4.68 without friction; the bound converges with more positions, without a gap."""
-    limits = []
+    yield_limits = []
     for counts, max_depth in (((19, 13), 2.4), ((31, 25), 3.0)):
-        bound = fatigue.shakedown_in_plane(sphere_passage(counts, max_depth), HalfSpace(material=UNIT_MATERIAL))
+        bound = fatigue.shakedown_in_plane(make_sphere_passage(counts, max_depth), HalfSpace(material=UNIT_MATERIAL))
         assert float(bound["program_gap"]) < 1e-4
-        limits.append(1 / float(bound["peak_shakedown_stress"]))
-    assert limits[1] == pytest.approx(4.68, rel=0.01)
-    assert limits[1] > limits[0]
+        yield_limits.append(1 / float(bound["peak_shakedown_stress"]))
+    assert yield_limits[1] == pytest.approx(4.68, rel=0.01)
+    assert yield_limits[1] > yield_limits[0]
 
 
 def test_program_without_convergence_warns(line_contact_weaker_at_ends, monkeypatch) -> None:
@@ -100,7 +100,7 @@ def test_equilibrium_elements_give_a_similar_limit() -> None:
     """An independent program with linear stresses in triangles has fewer degrees of freedom and a slightly lower
     limit."""
     length, x_edges, z_edges = 0.5, np.linspace(0, 0.5, 7), np.linspace(0, 2.4, 11)
-    x, z, y = point_positions(x_edges, 0), point_positions(z_edges, 1), np.linspace(-2.4, 2.4, 25)
+    x, z, y = list_point_positions(x_edges, 0), list_point_positions(z_edges, 1), np.linspace(-2.4, 2.4, 25)
     result = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, 0.0)
     distribution = 1 - 0.2 * np.abs(2 * x / length - 1)[:, None, None] ** 2
     stress = xr.Dataset(
@@ -108,7 +108,7 @@ def test_equilibrium_elements_give_a_similar_limit() -> None:
     )
     rows = [stress[name].transpose("x", "z", "y").values.reshape(-1, y.size) for name in STRESSES]
     history = np.stack([np.pad(row, ((0, 0), (0, 1))) for row in rows], axis=-1)
-    element_limit = 1 / min_shear_yield_stress(history, x_edges, z_edges)
+    element_limit = 1 / minimize_shear_yield_stress(history, x_edges, z_edges)
     body = FiniteLengthSpace(length=length, material=UNIT_MATERIAL)
     spline_limit = 1 / float(fatigue.shakedown_in_plane(stress, body)["peak_shakedown_stress"])
     rolling_limits = 1 / float(fatigue.shakedown(stress)["shakedown_stress"].max())
@@ -136,8 +136,8 @@ def test_flush_roller_satisfies_melan(short_body, strip_pressure) -> None:
     for name in ("sigma_zz", "tau_xz"):
         assert float(abs(residual[name].isel(z=0)).max()) < 1e-9 * max_residual
     # The history with the residual stress yields nowhere at k.
-    total = stress.assign({name: stress[name] + value for name, value in residual.items()})
-    xx, yy, zz, xy, xz, yz = (total[name] for name in STRESSES)
+    total_stress = stress.assign({name: stress[name] + value for name, value in residual.items()})
+    xx, yy, zz, xy, xz, yz = (total_stress[name] for name in STRESSES)
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
     max_stress = np.sqrt(squared.max("y") / 3)
     assert (max_stress <= result["shakedown_stress"] * (1 + 1e-6)).all()

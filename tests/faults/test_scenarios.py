@@ -16,7 +16,7 @@ PAGE = ROOT / "docs" / "explanation" / "reliability.md"
 
 @pytest.fixture(scope="module")
 def undisturbed() -> xr.Dataset:
-    return studies.undisturbed_values()
+    return studies.compute_undisturbed_values()
 
 
 def test_table_replaces_previous_table(tmp_path: Path) -> None:

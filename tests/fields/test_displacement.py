@@ -37,7 +37,7 @@ def eccentric_load(on_cells) -> xr.DataArray:
     return on_cells(lambda x, y: np.sqrt(np.maximum(1 - (x - 1.3) ** 2 - y**2, 0.0)), (0.0, 4.0), (-1.5, 1.5), (64, 48))
 
 
-def strain_at(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
+def compute_strain(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
     """Strain tensor at a point, by central differences of the displacements."""
     axes = {axis: coordinate + step * np.array([-1.0, 0.0, 1.0]) for axis, coordinate in zip("xyz", point, strict=True)}
     field = displacement_field(body, pressure, friction=friction, **axes)
@@ -54,7 +54,7 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric_load: xr
     friction = 0.4
     body, shear, nu = BODIES[name], MATERIAL.shear_modulus, MATERIAL.poisson
     for point in ((0.25, 0.2, 0.4), (1.5, -0.6, 0.8), (3.7, 0.1, 1.5)):
-        strain = strain_at(body, eccentric_load, friction, point)
+        strain = compute_strain(body, eccentric_load, friction, point)
         expected = 2 * shear * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
         stress = stress_field(body, eccentric_load, friction=friction, x=point[:1], y=point[1:2], z=point[2:]).squeeze()
         for i, j, component in (
@@ -124,13 +124,13 @@ def test_displacement_does_not_depend_on_further_positions() -> None:
     cells[1] = 1.0
     loads = {Load.NORMAL: TopLoad(cells)}
 
-    def displacement_at(x: list[float], z: list[float]) -> float:
+    def compute_displacement(x: list[float], z: list[float]) -> float:
         points = Points(np.array(x), np.zeros(1), np.array(z))
         return float(displacement_under(body, loads, grid, points)[2, -1, 0, -1])
 
-    single_displacement = displacement_at([0.6], [1.0])
-    assert displacement_at([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single_displacement, rel=1e-6)
-    assert displacement_at([0.1, 0.6], [1.0]) == pytest.approx(single_displacement, rel=1e-6)
+    single_displacement = compute_displacement([0.6], [1.0])
+    assert compute_displacement([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single_displacement, rel=1e-6)
+    assert compute_displacement([0.1, 0.6], [1.0]) == pytest.approx(single_displacement, rel=1e-6)
 
 
 def test_influence_on_a_plane_sums_to_the_displacement() -> None:

@@ -32,12 +32,12 @@ def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
     y = grid.y[[10, 28, 33, 50]]
 
-    def end_stress_under(load: Load, cells: np.ndarray) -> np.ndarray:
+    def compute_end_stress(load: Load, cells: np.ndarray) -> np.ndarray:
         return half_space_field(
             cells, stress_influence(load, 0.3), grid, Points(np.array([0.0, 8.0]), y, depths), extent=(0.0, 8.0)
         )[0]
 
-    end_stress = end_stress_under(Load.NORMAL, loads["P_h1"].values) + friction * end_stress_under(
+    end_stress = compute_end_stress(Load.NORMAL, loads["P_h1"].values) + friction * compute_end_stress(
         Load.ALONG_Y, pressure.values
     )
     # The load on the top is limited to the cells of the window.

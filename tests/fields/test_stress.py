@@ -11,7 +11,7 @@ from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import stresses_at
-from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
+from tests.closed_forms import compute_hertz_surface_stress, compute_sliding_surface_stress
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
 
@@ -27,8 +27,8 @@ def test_surface_stresses_of_sliding_circle_equal_closed_form(
     stress = stress_field(half_space, circle_pressure, friction=0.3, z=[0.0]).isel(z=0).sel(x=0.0, method="nearest")
     is_inside = np.abs(stress["y"].values) < 0.95
     x = np.full(int(is_inside.sum()), float(stress["x"]))
-    traction = sliding_circle_surface(x, stress["y"].values[is_inside], 1.0, 0.3, 0.3)
-    radial, hoop = hertz_circle_surface(np.hypot(x, stress["y"].values[is_inside]), 1.0, 1.0, 0.3)
+    traction = compute_sliding_surface_stress(x, stress["y"].values[is_inside], 1.0, 0.3, 0.3)
+    radial, hoop = compute_hertz_surface_stress(np.hypot(x, stress["y"].values[is_inside]), 1.0, 1.0, 0.3)
     assert np.abs(stress["sigma_yy"].values[is_inside] - radial - traction["sigma_yy"]).max() < 2e-2
     assert np.abs(stress["sigma_xx"].values[is_inside] - hoop - traction["sigma_xx"]).max() < 2e-2
 
@@ -45,7 +45,7 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
         )
         xx, yy, zz, xy, xz, yz = stress_components
 
-        def slope(component: np.ndarray, axis: int) -> float:
+        def compute_slope(component: np.ndarray, axis: int) -> float:
             indices = [1, 1, 1]
             indices[axis] = 2
             upper = component[tuple(indices)]
@@ -53,7 +53,7 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
             return float(upper - component[tuple(indices)]) / (2 * step)
 
         for terms in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)):
-            assert abs(sum(slope(term, axis) for axis, term in enumerate(terms))) < 5e-3
+            assert abs(sum(compute_slope(term, axis) for axis, term in enumerate(terms))) < 5e-3
 
 
 def test_stresses_follow_symmetries_of_load(short_body: FiniteLengthSpace, strip_pressure) -> None:
@@ -78,7 +78,8 @@ def test_stresses_are_linear_in_friction(short_body: FiniteLengthSpace, strip_pr
     pressure = strip_pressure(8.0, (32, 32))
     points = {"x": [0.0, 1.0], "y": [0.3], "z": [0.0, 0.4]}
     frictionless_stress, stress_at_friction, stress_at_double_friction = (
-        stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4)
+        stress_field(short_body, pressure, friction=friction_coefficient, **points)
+        for friction_coefficient in (0.0, 0.2, 0.4)
     )
     for name in STRESSES:
         assert np.allclose(

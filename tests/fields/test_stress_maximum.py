@@ -15,7 +15,7 @@ from contactstudy.fields.stress_maximum import Border, StressMaximum, place_sear
 from contactstudy.kernels.load import Load
 from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
-from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
+from tests.closed_forms import compute_hertz_surface_stress, compute_sliding_surface_stress
 
 STEEL = Material(210e9, 0.3)
 RADIUS, PRESSURE = 5e-3, 2e9
@@ -23,7 +23,7 @@ HALF_WIDTH = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
 NO_POSITIONS = np.zeros(0)
 
 
-def circle_pressure() -> tuple[Grid, FloatArray]:
+def make_circle_pressure() -> tuple[Grid, FloatArray]:
     """Hertz pressure on a circle of radius 1."""
     grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=72, cells_y=72)
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
@@ -39,7 +39,7 @@ def find_maximum(grid: Grid, pressure: FloatArray, friction: float) -> StressMax
 
 
 def test_stress_maximum_below_circle_matches_closed_form() -> None:
-    grid, pressure = circle_pressure()
+    grid, pressure = make_circle_pressure()
     computed = find_maximum(grid, pressure, 0.0)
     z = np.linspace(0.3, 0.7, 4001)
     radial, axial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
@@ -51,12 +51,12 @@ def test_stress_maximum_below_circle_matches_closed_form() -> None:
 
 
 def test_high_friction_moves_stress_maximum_to_top() -> None:
-    grid, pressure = circle_pressure()
+    grid, pressure = make_circle_pressure()
     computed = find_maximum(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
-    radial, hoop = hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
+    radial, hoop = compute_hertz_surface_stress(np.abs(y), 1.0, 1.0, 0.3)
     hertz_pressure, zero = np.sqrt(1 - y**2), np.zeros_like(y)
-    traction = sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
+    traction = compute_sliding_surface_stress(zero, y, 1.0, 0.5, 0.3)
     components = (
         hoop + traction["sigma_xx"],
         radial + traction["sigma_yy"],
@@ -73,7 +73,7 @@ def test_high_friction_moves_stress_maximum_to_top() -> None:
 
 def test_stress_maximum_does_not_depend_on_point_order() -> None:
     """Polynomials through two positions that differ by rounding would have large errors."""
-    grid, pressure = circle_pressure()
+    grid, pressure = make_circle_pressure()
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
@@ -91,13 +91,13 @@ def test_stress_maximum_does_not_depend_on_point_order() -> None:
 
 
 def test_stress_maximum_without_pressure_is_zero() -> None:
-    grid, pressure = circle_pressure()
+    grid, pressure = make_circle_pressure()
     computed = find_maximum(grid, 0 * pressure, 0.0)
     assert (computed.value, computed.error) == (0.0, 0.0)
     assert np.isnan(computed.position).all()
 
 
-def sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
+def make_sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
     """A roller with an edge radius of 0.4 half-widths: the largest stress lies at a depth of 0.03 half-widths."""
     body = FiniteLengthSpace(length=20 * HALF_WIDTH, material=STEEL)
     roller = Roller(
@@ -106,20 +106,20 @@ def sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0
     return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
 
 
-def maximum_position(result: xr.Dataset) -> list[float]:
+def find_maximum_position(result: xr.Dataset) -> list[float]:
     return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
 
 
 def test_stress_maximum_does_not_depend_on_positions() -> None:
     friction = 0.1
-    case = sharp_roller(friction)
+    case = make_sharp_roller(friction)
     distant_result = solve(case, accuracy=0.02, x=[0.0, 5 * HALF_WIDTH], y=[0.0], z=[0.5 * HALF_WIDTH])
     near_result = solve(
         case, accuracy=0.02, x=HALF_WIDTH * np.linspace(0, 8, 9), y=[0.0], z=HALF_WIDTH * np.linspace(0, 3, 4)
     )
     peak_von_mises = float(distant_result.peak_von_mises)
     assert float(near_result.peak_von_mises) == pytest.approx(peak_von_mises, rel=2e-3)
-    x, y, z = maximum_position(distant_result)
+    x, y, z = find_maximum_position(distant_result)
     step = 0.01 * HALF_WIDTH
     offsets = 2 * step * np.arange(-2.0, 3.0)
     depths = z + 0.4 * step * np.arange(-4.0, 5.0)
@@ -139,7 +139,7 @@ def test_stress_maximum_does_not_depend_on_positions() -> None:
 @pytest.mark.slow
 def test_stress_maximum_error_covers_finer_cells() -> None:
     coarse_result, fine_result = (
-        solve(sharp_roller(0.4), accuracy=accuracy, x=[0.0], y=[0.0], z=[HALF_WIDTH]) for accuracy in (0.02, 0.004)
+        solve(make_sharp_roller(0.4), accuracy=accuracy, x=[0.0], y=[0.0], z=[HALF_WIDTH]) for accuracy in (0.02, 0.004)
     )
     error = abs(float(coarse_result.peak_von_mises - fine_result.peak_von_mises))
     assert error <= float(coarse_result.peak_von_mises_error) < 0.04 * float(fine_result.peak_von_mises)
@@ -148,13 +148,13 @@ def test_stress_maximum_error_covers_finer_cells() -> None:
 @pytest.mark.slow
 def test_opposite_tilt_mirrors_stress_maximum() -> None:
     tilted_result, mirrored_result = (
-        solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[HALF_WIDTH]) for tilt in (1e-3, -1e-3)
+        solve(make_sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[HALF_WIDTH]) for tilt in (1e-3, -1e-3)
     )
     assert float(tilted_result.peak_von_mises) == pytest.approx(float(mirrored_result.peak_von_mises), rel=1e-3)
-    assert maximum_position(tilted_result)[0] == pytest.approx(
-        20 * HALF_WIDTH - maximum_position(mirrored_result)[0], abs=0.02 * HALF_WIDTH
+    assert find_maximum_position(tilted_result)[0] == pytest.approx(
+        20 * HALF_WIDTH - find_maximum_position(mirrored_result)[0], abs=0.02 * HALF_WIDTH
     )
-    assert abs(maximum_position(tilted_result)[0] - 10 * HALF_WIDTH) > 5 * HALF_WIDTH
+    assert abs(find_maximum_position(tilted_result)[0] - 10 * HALF_WIDTH) > 5 * HALF_WIDTH
 
 
 def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
@@ -172,7 +172,7 @@ def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
     axial_pressure = computed.pressure.max("y")
     assert float(axial_pressure.sel(x=half_width, method="nearest")) < 0.97 * float(axial_pressure.max())
     assert float(computed.peak_von_mises) == pytest.approx(float(end_stresses.von_mises.max()), rel=3e-3)
-    assert min(maximum_position(computed)[0], length - maximum_position(computed)[0]) < 2 * half_width
+    assert min(find_maximum_position(computed)[0], length - find_maximum_position(computed)[0]) < 2 * half_width
 
 
 def test_given_cells_and_singular_ends_omit_error() -> None:
@@ -191,7 +191,7 @@ def test_given_cells_and_singular_ends_omit_error() -> None:
     assert "given cells" in grid_result.peak_von_mises_error.attrs["comment"]
     refined_result = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[HALF_WIDTH])
     assert np.isinf(float(refined_result.peak_von_mises))
-    assert np.isnan(maximum_position(refined_result)).all()
+    assert np.isnan(find_maximum_position(refined_result)).all()
 
 
 FREE_ENDS = {"sharp": (1.2e-3, 1.8e9, 0.3, None), "crowned": (1e-3, 1.5e9, 0.3, profiles.FullCrown(1.0))}
@@ -217,8 +217,8 @@ def test_stress_maximum_at_free_end_is_on_top(
     is_inside = result.pressure.sel(x=dense_stress.x, y=dense_stress.y) > 0.3 * float(result.pressure.max())
     max_stress = float(dense_stress.von_mises.where(is_inside).max())
     assert float(result.peak_von_mises) == pytest.approx(max_stress, rel=5e-3)
-    assert maximum_position(result)[2] == 0.0
-    assert min(maximum_position(result)[0], length - maximum_position(result)[0]) < a
+    assert find_maximum_position(result)[2] == 0.0
+    assert min(find_maximum_position(result)[0], length - find_maximum_position(result)[0]) < a
     assert float(result.peak_von_mises_error) < 0.04 * float(result.peak_von_mises)
 
 
@@ -256,8 +256,8 @@ def test_friction_moves_stress_maximum_on_top() -> None:
         )
         for friction in (0.3, 0.5)
     ]
-    assert [maximum_position(variant)[2] for variant in computed] == [0.0, 0.0]
-    low_friction_peak, high_friction_peak = (float(variant.peak_von_mises) for variant in computed)
+    assert [find_maximum_position(friction_result)[2] for friction_result in computed] == [0.0, 0.0]
+    low_friction_peak, high_friction_peak = (float(friction_result.peak_von_mises) for friction_result in computed)
     assert high_friction_peak / low_friction_peak == pytest.approx(5 / 3, rel=0.05)
 
 

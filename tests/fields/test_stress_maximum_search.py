@@ -32,7 +32,7 @@ def test_symmetric_contact_searches_one_peak() -> None:
     unequal_peaks = np.where(grid.x[:, None] > 5, 0.9, 1.0) * end_peaks
     low_peak = np.where(grid.x[:, None] > 5, 0.3, 1.0) * end_peaks
     sample_counts = [
-        len(place_search(BODY, sliding(variant, 0.0), grid).samples) for variant in (end_peaks, unequal_peaks, low_peak)
+        len(place_search(BODY, sliding(peaks, 0.0), grid).samples) for peaks in (end_peaks, unequal_peaks, low_peak)
     ]
     assert sample_counts == [2, 3, 2]
     for points in place_search(BODY, sliding(unequal_peaks, 0.0), grid).samples:

@@ -33,13 +33,13 @@ def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSp
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first_load, second_load = np.random.default_rng(1).random((2, 24, 16))
     if is_tangential:
-        original = operator({Load.ALONG_Y: first_load})
-        mirrored = operator({Load.ALONG_Y: first_load[:, ::-1]})
-        assert np.abs(original + mirrored[:, ::-1]).max() < 1e-12
+        first_displacement = operator({Load.ALONG_Y: first_load})
+        mirrored_displacement = operator({Load.ALONG_Y: first_load[:, ::-1]})
+        assert np.abs(first_displacement + mirrored_displacement[:, ::-1]).max() < 1e-12
     else:
         works = [
-            (a * operator({Load.NORMAL: displacing_load})).sum()
-            for a, displacing_load in ((first_load, second_load), (second_load, first_load))
+            (observed_load * operator({Load.NORMAL: displacing_load})).sum()
+            for observed_load, displacing_load in ((first_load, second_load), (second_load, first_load))
         ]
         assert works[0] == pytest.approx(works[1], rel=1e-12)
 

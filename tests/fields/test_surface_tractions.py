@@ -41,7 +41,7 @@ X, Y = Load.ALONG_X, Load.ALONG_Y
 ALL = (Load.NORMAL, X, Y)
 
 
-def asymmetric_traction(cells: int = 24, slope_x: float = 0.3) -> xr.DataArray:
+def make_asymmetric_traction(cells: int = 24, slope_x: float = 0.3) -> xr.DataArray:
     """A load that reaches both ends and has no symmetry."""
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=cells, cells_y=cells)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
@@ -79,23 +79,27 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
 )
 def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None:
     """The surface operator equals the harmonics of both auxiliary bodies at the depth 0."""
-    body, loads = BODIES[name], load_arguments(load, asymmetric_traction())
-    top = surface_displacement(body, **loads, components="xyz")
+    body, loads = BODIES[name], load_arguments(load, make_asymmetric_traction())
+    surface_result = surface_displacement(body, **loads, components="xyz")
     body_field = displacement_field(body, **loads)
-    max_displacement = max(float(np.ptp(top[name].values)) for name in top)
+    max_displacement = max(float(np.ptp(surface_result[name].values)) for name in surface_result)
     # Columns at a loaded end are averaged: under a traction along x their displacement has a logarithmic slope.
-    inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
+    inner_range = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
-        difference = (top[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner)
+        difference = (surface_result[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner_range)
         assert float(np.abs(difference).max()) < 2e-3 * max_displacement, axis
 
 
 @pytest.mark.parametrize("body", [BODIES["quarter space"], BODIES["finite length"]], ids=["quarter", "finite"])
 @pytest.mark.parametrize("load", ALL)
 def test_ends_are_free_of_traction(body: Body, load: Load) -> None:
-    ends = [end for end in body.extent if np.isfinite(end)]
+    end_positions = [end_x for end_x in body.extent if np.isfinite(end_x)]
     stress = stress_field(
-        body, **load_arguments(load, asymmetric_traction(48)), x=ends, y=[-1.2, -0.5, 0.0, 0.7], z=[0.05, 0.2, 1.0, 4.0]
+        body,
+        **load_arguments(load, make_asymmetric_traction(48)),
+        x=end_positions,
+        y=[-1.2, -0.5, 0.0, 0.7],
+        z=[0.05, 0.2, 1.0, 4.0],
     )
     for name in ("sigma_xx", "tau_xy", "tau_xz"):
         assert float(np.abs(stress[name]).max()) < 1e-4, name
@@ -103,7 +107,7 @@ def test_ends_are_free_of_traction(body: Body, load: Load) -> None:
 
 def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> None:
     """Hooke's law at a point of a body that the force bends."""
-    body, loads = BODIES["finite length"], load_arguments(Load.ALONG_X, asymmetric_traction())
+    body, loads = BODIES["finite length"], load_arguments(Load.ALONG_X, make_asymmetric_traction())
     position_by_axis, step = {"x": 0.4, "y": 0.3, "z": 0.6}, 0.02
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
     gradient = np.empty((3, 3))
@@ -126,7 +130,7 @@ def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> No
 
 
 def test_reflection_reverses_axial_traction() -> None:
-    body, load = BODIES["finite length"], asymmetric_traction()
+    body, load = BODIES["finite length"], make_asymmetric_traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     displacement = surface_displacement(body, **load_arguments(Load.ALONG_X, load), components="xyz")
     reflected_displacement = surface_displacement(body, **load_arguments(Load.ALONG_X, reflected), components="xyz")
@@ -170,7 +174,7 @@ def test_long_body_has_axial_displacement_of_half_space() -> None:
 
 
 def test_mirrored_traction_mirrors_equivalent_loads() -> None:
-    load = asymmetric_traction()
+    load = make_asymmetric_traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
     computed, reflected_loads = (
@@ -187,12 +191,12 @@ def test_mirrored_traction_mirrors_equivalent_loads() -> None:
 def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     grid = GRIDS["uniform"]
     body = BODIES["finite length"]
-    pair = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
+    pair_operator = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
     pressure = np.random.default_rng(2).random(grid.shape)
-    displacements = pair.compute_displacements({Load.NORMAL: pressure}, ALL)
+    displacements = pair_operator.compute_displacements({Load.NORMAL: pressure}, ALL)
     for direction in (Load.ALONG_X, Load.ALONG_Y):
         assert np.abs(displacements[direction]).max() < 1e-12 * np.abs(displacements[Load.NORMAL]).max()
-    axial_displacement = pair.compute_displacements({Load.ALONG_X: pressure}, ALL)
+    axial_displacement = pair_operator.compute_displacements({Load.ALONG_X: pressure}, ALL)
     single_displacement = surface_operator(body, grid, ALL, directions=ALL).compute_displacements(
         {Load.ALONG_X: pressure}, ALL
     )
@@ -201,7 +205,7 @@ def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
 
 
 def test_displacements_of_tractions_and_pressure_add_up() -> None:
-    load = asymmetric_traction()
+    load = make_asymmetric_traction()
     body = BODIES["quarter space"]
     displacement_of_friction = surface_displacement(body, load, 0.2)
     displacement_of_traction = surface_displacement(body, load, traction_y=0.2 * load)
@@ -217,12 +221,12 @@ def test_displacements_of_tractions_and_pressure_add_up() -> None:
 
 
 def test_invalid_input_raises_error() -> None:
-    load = asymmetric_traction()
+    load = make_asymmetric_traction()
     body = BODIES["finite length"]
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*traction_y"):
         surface_displacement(body, load, 0.1, traction_y=load)
     with pytest.raises(InvalidInputError, match=r"traction_x.coords.*those of the pressure"):
-        stress_field(body, load, traction_x=asymmetric_traction(12))
+        stress_field(body, load, traction_x=make_asymmetric_traction(12))
     with pytest.raises(InvalidInputError, match="components = 'w'"):
         surface_displacement(body, load, components="xw")
     with pytest.raises(InvalidInputError, match="components = \\[\\]"):

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import contactstudy as cs
-from benchmarks.random_films import random_case
+from benchmarks.random_films import draw_case
 from contactstudy.film import levels, solve_film
 from contactstudy.film.newton import SETTINGS
 from contactstudy.film.solve import create_film_case
 
-COARSE = replace(
+COARSE_RESOLUTION = replace(
     levels.RESOLUTION,
     finest=1.1,
     finest_share=0.24,
@@ -24,7 +24,7 @@ COARSE = replace(
 )
 
 
-def short_case(**changes):
+def make_short_case(**changes):
     """A steel roller of 6 a with a crown on a flush body."""
     steel = cs.Material(210e9, 0.3)
     length = 6 * 65e-6
@@ -58,7 +58,7 @@ def test_dry_start_converges_on_columns_of_a_thin_film(monkeypatch):
     solve_normal = levels.solve_normal
     monkeypatch.setattr(levels, "solve_normal", record_iterate)
     monkeypatch.setattr(levels, "solve_newton", stop_before_newton)
-    film = create_film_case(random_case(Random(1051)))
+    film = create_film_case(draw_case(Random(1051)))
     with pytest.raises(NewtonReachedError):
         levels.film_on_level(film, film.coarsest_level, SETTINGS)
     assert iterates[0].converged
@@ -68,11 +68,11 @@ def test_dry_start_that_has_not_converged_raises(monkeypatch):
     solve_normal = levels.solve_normal
     monkeypatch.setattr(levels, "solve_normal", lambda *arguments: replace(solve_normal(*arguments), converged=False))
     with pytest.raises(cs.FilmError, match=r"the dry contact on its cells has not converged in \d+ iterations"):
-        solve_film(short_case(), accuracy=0.2, resolution=COARSE)
+        solve_film(make_short_case(), accuracy=0.2, resolution=COARSE_RESOLUTION)
 
 
 def test_nan_guess_is_replaced_by_dry_contact(monkeypatch):
-    film = create_film_case(short_case(), resolution=COARSE)
+    film = create_film_case(make_short_case(), resolution=COARSE_RESOLUTION)
     level = film.coarsest_level
     first_film = levels.film_on_level(film, level, SETTINGS)
 
@@ -88,7 +88,7 @@ def test_nan_guess_is_replaced_by_dry_contact(monkeypatch):
 
 def test_refined_columns_are_narrow_at_each_minimum():
     """Columns of 0.01 a at the flat least film of a tilted roller (random seed 1056) stopped Newton."""
-    film = create_film_case(short_case(), resolution=COARSE)
+    film = create_film_case(make_short_case(), resolution=COARSE_RESOLUTION)
     cells, _ = levels.create_cells(film, film.coarsest_level)
     minima = [(0.5, 0.1), (3.0, 1.5)]  # positions and lengths
     level_refined_once = film.coarsest_level.refined("columns", film, minima)

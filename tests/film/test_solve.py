@@ -40,7 +40,7 @@ def make_film_case(length, load=20.0, lubricant=10.0, *, body=None, profile=None
     return replace(case, lubricant=make_oil(case, load, lubricant, abs(speed)), motion=motion)
 
 
-COARSE = replace(
+COARSE_RESOLUTION = replace(
     RESOLUTION, finest=1.1, finest_share=0.24, inner=0.32, inner_inlet=5, growth=0.2, columns=0.24, columns_inlet=0.8
 )
 LENGTH = 6 * HALF_WIDTH
@@ -48,7 +48,7 @@ CROWN = cs.profiles.Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
 
 
 def solve_coarse_film(case, **arguments):
-    return solve_film(case, accuracy=0.2, resolution=COARSE, **arguments)
+    return solve_film(case, accuracy=0.2, resolution=COARSE_RESOLUTION, **arguments)
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +97,7 @@ def test_mid_length_film_equals_a_line_contact():
 @pytest.mark.slow
 def test_face_film_of_flush_rollers_has_converged():
     case = make_film_case(4 * HALF_WIDTH, 10.0, 5.0)
-    cells = (replace(COARSE, columns=0.12 * factor, columns_inlet=0.4 * factor) for factor in (1.0, 0.5))
+    cells = (replace(COARSE_RESOLUTION, columns=0.12 * factor, columns_inlet=0.4 * factor) for factor in (1.0, 0.5))
     film, film_on_narrow_columns = (solve_film(case, accuracy=0.2, resolution=resolution) for resolution in cells)
     assert float(film.least_film_first_x) == pytest.approx(0.0, abs=1e-12)
     assert float(film.least_film_first) < 0.8 * float(film.least_film_middle)
@@ -189,7 +189,7 @@ def test_film_at_next_speed_is_refined_once_for_accuracy(crowned_film):
     )
     names = ("central_film", "least_film", "least_film_middle")
     accuracy = max(float(crowned_film[f"{name}_error"] / crowned_film.central_film) for name in names)
-    film_from_previous = solve_film(case, accuracy=accuracy, resolution=COARSE, start=crowned_film)
+    film_from_previous = solve_film(case, accuracy=accuracy, resolution=COARSE_RESOLUTION, start=crowned_film)
     assert int(film_from_previous.film_levels) == 1
     assert film_from_previous.pressure.size > crowned_film.pressure.size
     fine_film = solve_film(case, accuracy=0.2, resolution=RESOLUTION)
@@ -289,16 +289,17 @@ def test_load_position_balances_the_pressure():
 def test_asperity_pressure_follows_law_of_user():
     stiffness = 1e8  # Pa
 
-    def asperity_pressure(distance):
+    def compute_asperity_pressure(distance):
         return stiffness * np.exp(-distance / 1e-7)
 
     film = solve_coarse_film(
-        make_film_case(LENGTH, 10.0, 5.0, profile=CROWN), asperities=Asperities(rms=1e-7, pressure=asperity_pressure)
+        make_film_case(LENGTH, 10.0, 5.0, profile=CROWN),
+        asperities=Asperities(rms=1e-7, pressure=compute_asperity_pressure),
     )
     distance = film.film_thickness.sel(x=0.5 * LENGTH, y=0.0, method="nearest")
     operator_count = float(film.asperity_pressure.sel(x=0.5 * LENGTH, y=0.0, method="nearest"))
     # The mean height of the film exceeds the distance of the mean planes.
-    assert float(asperity_pressure(distance)) <= operator_count < 2 * float(asperity_pressure(distance))
+    assert float(compute_asperity_pressure(distance)) <= operator_count < 2 * float(compute_asperity_pressure(distance))
     area = film.x_width * float(film.y[1] - film.y[0])
     load_share = float((film.asperity_pressure * area).sum() / film.normal_load)
     assert float(film.asperity_load_share) == pytest.approx(load_share, rel=1e-3)

@@ -17,7 +17,7 @@ RESOLUTION = superpose.Resolution(order=4, nodes=5, growth=2.0, panels=superpose
 
 def solve_finite_elements(depths: tuple[float, ...]) -> np.ndarray:
     """``E u_z`` at mid-length of the top less the mean along the line at each depth."""
-    mesh = RESOLUTION.mesh_x(LENGTH), RESOLUTION.mesh_z()
+    mesh = RESOLUTION.make_mesh_x(LENGTH), RESOLUTION.make_mesh_z()
     body = HarmonicBody(*(Line(edges=edges, order=RESOLUTION.order) for edges in mesh), POISSON)
     node, weight = legendre.leggauss(8)
     mid_length = body.x.evaluate([0.5 * LENGTH])[0]
@@ -31,10 +31,10 @@ def solve_finite_elements(depths: tuple[float, ...]) -> np.ndarray:
         line_mean = 0.5 * weight @ (along_line @ (at_depths @ displacement.T).T)
         response.append(2 * ((mid_length @ (displacement @ body.top))[0] - line_mean))
     responses = np.array(response)
-    total = np.zeros(len(depths))
-    for panel, _, weights, interpolate in superpose._panels(RESOLUTION, superpose.transform_quartic):
-        total += weights @ interpolate @ responses[panel]
-    return (1 + POISSON) * total
+    summed_displacement = np.zeros(len(depths))
+    for panel, _, weights, interpolate in superpose._make_panels(RESOLUTION, superpose.transform_quartic):
+        summed_displacement += weights @ interpolate @ responses[panel]
+    return (1 + POISSON) * summed_displacement
 
 
 @pytest.mark.slow

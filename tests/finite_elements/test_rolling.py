@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.finite_elements.rolling import compute_flexibility, roll
+from benchmarks.finite_elements.rolling import compute_flexibility, solve_rolling
 from benchmarks.finite_elements.superpose import PANELS, Resolution
 from contactstudy import FiniteLengthSpace, Material, Rolling
 from contactstudy.bodies import Counterbody
@@ -24,7 +24,7 @@ def test_rolling_between_free_ends_equals_finite_elements(monkeypatch: pytest.Mo
     The slip of both codes is the difference between neighbouring cells, with equal errors of first order.
     """
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
-    expected = roll(
+    expected = solve_rolling(
         compute_flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
     )
     assert expected.change < 1e-3

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.fuzz import __main__ as long_run
 from benchmarks.fuzz import outcome, properties
-from benchmarks.fuzz.outcome import Outcome, outcome_of
+from benchmarks.fuzz.outcome import Outcome, classify_outcome
 from benchmarks.fuzz.solutions import ViolationError
 from contactstudy import InvalidInputError
 
@@ -24,7 +24,7 @@ def run_command(monkeypatch, tmp_path):
         return Outcome("violation" if rng.random() < 0.2 else "converged", "said", ("balance",))
 
     create_random = Random
-    monkeypatch.setattr(long_run, "outcome_of", make_outcome)
+    monkeypatch.setattr(long_run, "classify_outcome", make_outcome)
     monkeypatch.setattr(long_run, "Random", lambda seed: seeds.append(seed) or create_random(seed))
 
     def run_with(*arguments: str) -> tuple[int, list[int]]:
@@ -60,16 +60,16 @@ def test_unexpected_errors_are_violations(monkeypatch) -> None:
 
     for error, kind in ((ZeroDivisionError(), "violation"), (InvalidInputError("a", 1, "b"), "refused")):
         monkeypatch.setattr(outcome, "draw_case", make_failure(error))
-        assert outcome_of(Random(0)).kind == kind
+        assert classify_outcome(Random(0)).kind == kind
     monkeypatch.undo()
     # An error of the package for a variant of a solved case is a violation.
     for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), ViolationError()):
         monkeypatch.setattr(properties, "CONSTANT_CHECKS", (make_failure(error),))
-        assert outcome_of(Random(3)).kind == "violation"
+        assert classify_outcome(Random(3)).kind == "violation"
 
 
 def test_slow_cases_are_violations(monkeypatch) -> None:
     monkeypatch.setattr(outcome, "MAX_SECONDS", 0.0)
-    outcome_of_slow_case = outcome_of(Random(3))
+    outcome_of_slow_case = classify_outcome(Random(3))
     assert outcome_of_slow_case.kind == "violation"
     assert "s of processor time, converged" in outcome_of_slow_case.message

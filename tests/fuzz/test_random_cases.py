@@ -8,14 +8,14 @@ import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
-from benchmarks.fuzz.outcome import outcome_of
+from benchmarks.fuzz.outcome import classify_outcome
 
 FUZZ_SETTINGS = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
 def check_outcome(rng: Random, *, refined: bool) -> None:
     """Solve a random case; its outcome is no violation."""
-    outcome = outcome_of(rng, refined=refined)
+    outcome = classify_outcome(rng, refined=refined)
     event(outcome.kind)
     assert outcome.kind != "violation", outcome.message
 
@@ -35,7 +35,7 @@ def test_random_cases_on_refined_cells_have_no_violation(rng: Random) -> None:
 
 
 def test_seed_determines_case() -> None:
-    first_case, second_case = (outcome_of(Random(9)) for _ in range(2))
+    first_case, second_case = (classify_outcome(Random(9)) for _ in range(2))
     assert (first_case.kind, first_case.message, first_case.checked) == (
         second_case.kind,
         second_case.message,

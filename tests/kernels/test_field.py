@@ -25,8 +25,8 @@ def test_unaligned_positions_equal_single_positions() -> None:
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
     joint_field, *single_fields = (
-        half_space_field(load, INFLUENCE, grid, Points(variant, grid.y[::4], z), extent=(0.0, 8.0))
-        for variant in (x, *x[:, None])
+        half_space_field(load, INFLUENCE, grid, Points(points_x, grid.y[::4], z), extent=(0.0, 8.0))
+        for points_x in (x, *x[:, None])
     )
     # Merged far columns cause the difference.
     np.testing.assert_allclose(
@@ -41,7 +41,7 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
     """Loads uniform in each cell have steps of the whole pressure at the edges."""
     grid = Grid.between(EDGES[kind] * 4.0 / EDGES[kind][-1], (-1.2, 1.2), 24)
     rng, influence = np.random.default_rng(3), stress_influence(load, 0.3)
-    cell_loads = decreasing_pressure(grid) if is_shaped else rng.integers(0, 2, grid.shape).astype(np.float64)
+    cell_loads = make_decreasing_pressure(grid) if is_shaped else rng.integers(0, 2, grid.shape).astype(np.float64)
     x, y = np.array([0.0, 0.013, 1.7, 3.6]), np.append(np.sort(rng.uniform(-1.5, 1.5, 16)), 30.0)
     z = grid.dy * np.array([0.0, 0.3, 1.0, 2.5, 7.9, 8.0, 30.0])
     compared = slice(0, None, 4)
@@ -60,7 +60,7 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
     np.testing.assert_allclose(joint_field[:, :, compared], np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
 
 
-def decreasing_pressure(grid: Grid, half_length: float = 1.7) -> FloatArray:
+def make_decreasing_pressure(grid: Grid, half_length: float = 1.7) -> FloatArray:
     """Pressure that decreases to zero inside its last cells along y, and within a finite half-length along x."""
     axial_profile = ((grid.x[:, None] - 2.0) / half_length) ** 8
     return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - axial_profile, 0.0)))
@@ -77,10 +77,10 @@ def test_field_is_linear_in_the_load(kind: str, *, has_ends: bool, is_shaped: bo
     extent = (0.0, 4.0) if has_ends else (-np.inf, np.inf)
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
-    shape = decreasing_pressure(grid) if is_shaped else None
+    shape = make_decreasing_pressure(grid) if is_shaped else None
     rng = np.random.default_rng(2)
     first_load, second_load = (
-        decreasing_pressure(grid) * rng.random(grid.shape),
+        make_decreasing_pressure(grid) * rng.random(grid.shape),
         rng.random(grid.shape) * (np.abs(grid.y) < 0.5),
     )
     x, y = (grid.x[::6], grid.y[::4]) if is_aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
@@ -98,7 +98,7 @@ def test_field_is_linear_in_the_load(kind: str, *, has_ends: bool, is_shaped: bo
 def test_load_on_whole_columns_adds_to_load_on_split_columns(kind: str, *, has_ends: bool) -> None:
     extent = (0.0, 4.0) if has_ends else (-np.inf, np.inf)
     grid = Grid.between(EDGES[kind] * 4.0 / EDGES[kind][-1], (-1.2, 1.2), 24)
-    uniform_load = decreasing_pressure(grid, np.inf)
+    uniform_load = make_decreasing_pressure(grid, np.inf)
     varying_load = uniform_load * np.random.default_rng(2).random(grid.shape)
     points = Points(grid.x[::6] if kind == "uniform" else np.array([0.01, 1.3, 3.77]), grid.y[::4], grid.dy * Z_STEPS)
     uniform_field, varying_field, sum_field = (
@@ -113,7 +113,7 @@ def test_load_on_whole_columns_adds_to_load_on_split_columns(kind: str, *, has_e
 def test_field_is_continuous_at_refinement_depth(kind: str, *, is_aligned: bool) -> None:
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
-    load = decreasing_pressure(grid)
+    load = make_decreasing_pressure(grid)
     x, y = (grid.x[::6], grid.y[::4]) if is_aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     for cell_size in (grid.dy, grid.dx):
         z = MAX_REFINED_DEPTH * cell_size * np.array([1 - 1e-9, 1 + 1e-9])
@@ -204,7 +204,7 @@ def test_symmetric_load_equals_sum_of_halves(
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
 def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: float) -> None:
     """The field is proportional to the load in any unit."""
-    computed, baseline = (compute_stresses(variant, GRID.x, GRID.y, (0.0, 2.0)) for variant in (unit * load, load))
+    computed, baseline = (compute_stresses(points_x, GRID.x, GRID.y, (0.0, 2.0)) for points_x in (unit * load, load))
     np.testing.assert_allclose(computed / unit, baseline, atol=1e-12 * np.abs(baseline).max())
 
 

@@ -8,7 +8,7 @@ import functools
 import pytest
 
 from benchmarks.mutation.equivalent import EQUIVALENT
-from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants, mutants_of
+from benchmarks.mutation.mutants import PACKAGES, Mutant, list_mutants, list_mutants_of_function
 
 SOURCE = '''"""A module: 1.5 + 2.5."""
 LIMIT = 2.5
@@ -22,7 +22,7 @@ def function(x: float | None = -1.5) -> float:
 
 
 def test_mutants_of_source_change_arithmetic_only() -> None:
-    mutants = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+    mutants = [(mutant.description, len(mutant.lines)) for mutant in list_mutants_of_function("a.py", SOURCE)]
     assert sorted(mutants) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
         ("* (2.0 - x))  ->  * (2.2 - x))", 2),
@@ -35,7 +35,7 @@ def test_mutants_of_source_change_arithmetic_only() -> None:
 
 @pytest.fixture(scope="module")
 def mutants() -> list[Mutant]:
-    return all_mutants()
+    return list_mutants()
 
 
 def test_every_mutant_is_another_program(mutants: list[Mutant]) -> None:

@@ -27,8 +27,8 @@ def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> 
         k = np.pi * mode_numbers / length
         weights = np.where(mode_numbers == 0, 1.0, 2.0) / length * np.exp(-k * height)
         assert modes.parity == parity
-        for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
-            expected = weights @ wave(np.outer(k, X))
+        for waves, wave_function in ((modes.cosine, np.cos), (modes.sine, np.sin)):
+            expected = weights @ wave_function(np.outer(k, X))
             assert sum_waves(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
 
 

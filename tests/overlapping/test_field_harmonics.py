@@ -72,7 +72,7 @@ def make_field_of_v(
     return lambda x, z: field(loads, x, z)[0, ..., 0, :]
 
 
-def derivative_along(field: Field, axis: int) -> FloatArray:
+def compute_derivative(field: Field, axis: int) -> FloatArray:
     """Derivative along x (0) or z (1) at the points."""
     field_ahead, field_behind = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
     return np.asarray((field_ahead - field_behind) / (2 * STEP))
@@ -93,8 +93,8 @@ def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None
     displacement, stress = create_field(MODES[name], displacement_harmonic), create_field(MODES[name], stress_harmonic)
     (ux, uy, uz), derivative_x, derivative_z = (
         displacement(X, Z),
-        derivative_along(displacement, 0),
-        derivative_along(displacement, 1),
+        compute_derivative(displacement, 0),
+        compute_derivative(displacement, 1),
     )
     direct_strains = np.array([derivative_x[0], -LATERAL * uy, derivative_z[2]])
     normal = direct_strains + POISSON / (1 - 2 * POISSON) * direct_strains.sum(axis=0)
@@ -104,7 +104,7 @@ def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None
     computed = stress(X, Z)
     yy, xy, yz = computed[[1, 3, 5]]
     assert computed == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(computed).max())
-    stress_derivative_x, stress_derivative_z = derivative_along(stress, 0), derivative_along(stress, 1)
+    stress_derivative_x, stress_derivative_z = compute_derivative(stress, 0), compute_derivative(stress, 1)
     balance = (
         stress_derivative_x[0] - LATERAL * xy + stress_derivative_z[4],
         stress_derivative_x[3] + LATERAL * yy + stress_derivative_z[5],
@@ -143,16 +143,16 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     if modes.parity:
         assert computed[0, 1] == pytest.approx(modes.parity * face_stress)
     # For cosines along z the top has neither shear nor a normal displacement.
-    real, top_depth = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
+    real_rays, top_depth = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
     stress, displacement = (
-        create_field(modes, harmonic, *real)
+        create_field(modes, harmonic, *real_rays)
         for create_field, harmonic in zip([make_field_of_v] * 2, FIELDS, strict=True)
     )
     assert np.abs(stress(X, top_depth)[4:]).max() < 1e-12 * np.abs(stress(X, Z)).max()
     assert np.abs(displacement(X, top_depth)[2]).max() < 1e-12 * np.abs(displacement(X, Z)).max()
 
 
-def weighted_spectrum(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
+def compute_weighted_spectrum(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
     """Weighted spectrum of a load on the top between the ends, by Gauss's rule."""
     nodes, rule = np.polynomial.legendre.leggauss(80)
     x = 0.5 * modes.length * (nodes + 1)
@@ -175,5 +175,5 @@ def test_normal_stress_of_v_on_top_equals_its_spectrum(name: str) -> None:
         def load(x: FloatArray, stress: Field = stress) -> FloatArray:
             return np.asarray(stress(x, np.zeros(1))[2, :, 0, 0])
 
-        expected = weighted_spectrum(modes, load) * kappa[index] / factor[index]
+        expected = compute_weighted_spectrum(modes, load) * kappa[index] / factor[index]
         assert computed[: modes.discrete.size, index] == pytest.approx(expected[: modes.discrete.size])

@@ -13,7 +13,7 @@ from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-UNIFORM = Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6)
+UNIFORM_GRID = Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6)
 COLUMNS = Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6)
 DEPTHS = np.array([0.1, 0.5])
 
@@ -29,8 +29,8 @@ def make_operators(grid: Grid, length: float, load: Load, *, mirrored_once: bool
         resolution=resolution,
         mirrored_once=mirrored_once,
     )
-    reference = 10 * length if np.isfinite(length) else None
-    return OverlappingOperators.of(problem, Points(grid.x, grid.y, DEPTHS), reference=reference)
+    reference_depth = 10 * length if np.isfinite(length) else None
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, DEPTHS), reference=reference_depth)
 
 
 def check_transpose(operator: LinearOperator) -> None:
@@ -49,7 +49,7 @@ def check_transpose(operator: LinearOperator) -> None:
 
 @pytest.mark.parametrize(
     ("grid", "length", "mirrored_once"),
-    [(COLUMNS, 2.0, False), (UNIFORM, 2.0, True), (UNIFORM, np.inf, False)],
+    [(COLUMNS, 2.0, False), (UNIFORM_GRID, 2.0, True), (UNIFORM_GRID, np.inf, False)],
     ids=["slab", "single", "quarter"],
 )
 @pytest.mark.parametrize("load", list(Load))
@@ -79,8 +79,8 @@ def test_problem_of_several_loads_sums_single_loads() -> None:
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
 def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None:
     """The alternation between H and V converges to the solution of the equation set in a quarter space."""
-    operators = make_operators(UNIFORM, np.inf, load)
-    cell_loads = np.random.default_rng(2).random(UNIFORM.cells_x * UNIFORM.cells_y)
+    operators = make_operators(UNIFORM_GRID, np.inf, load)
+    cell_loads = np.random.default_rng(2).random(UNIFORM_GRID.cells_x * UNIFORM_GRID.cells_y)
     source = operators.to_faces(load) @ (operators.modes(load) @ cell_loads)
     faces, to_faces = source, operators.to_faces(Load.NORMAL)
     for _ in range(40):
@@ -91,8 +91,8 @@ def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None
 
 
 def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
-    operators = make_operators(UNIFORM, 2.0, Load.NORMAL)
-    cell_loads = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
+    operators = make_operators(UNIFORM_GRID, 2.0, Load.NORMAL)
+    cell_loads = (np.linspace(1.5, 0.5, UNIFORM_GRID.cells_x)[:, None] * np.ones(UNIFORM_GRID.cells_y)).ravel()
     to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
     source = to_faces @ (operators.modes(Load.NORMAL) @ cell_loads)
     direct_solution = operators.equivalent(Load.NORMAL).top_load @ cell_loads

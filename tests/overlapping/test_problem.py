@@ -62,10 +62,10 @@ def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, referenc
                 unit * y, unit * shortest_distance, None if reference is None else unit * reference
             )
             assert len(computed) == len(expected)
-            for panel, variant in zip(computed, expected, strict=True):
-                assert unit * panel.nodes == pytest.approx(variant.nodes)
-                assert unit * panel.fine_nodes == pytest.approx(variant.fine_nodes)
-                assert panel.poles == variant.poles
+            for computed_panel, expected_panel in zip(computed, expected, strict=True):
+                assert unit * computed_panel.nodes == pytest.approx(expected_panel.nodes)
+                assert unit * computed_panel.fine_nodes == pytest.approx(expected_panel.fine_nodes)
+                assert computed_panel.poles == expected_panel.poles
 
 
 def test_distant_points_determine_first_wavenumber() -> None:

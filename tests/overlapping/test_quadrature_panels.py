@@ -56,10 +56,10 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     positions, matrix = computed
     assert positions.size < x.size
 
-    def function_steep_at_ends(positions_at: np.ndarray) -> np.ndarray:
+    def evaluate_steep_function(positions_at: np.ndarray) -> np.ndarray:
         return np.asarray(1 / (positions_at + 0.02) + (1 / (3.02 - positions_at) if np.isfinite(length) else 0.0))
 
-    assert matrix @ function_steep_at_ends(positions / unit) == pytest.approx(function_steep_at_ends(x), rel=1e-4)
+    assert matrix @ evaluate_steep_function(positions / unit) == pytest.approx(evaluate_steep_function(x), rel=1e-4)
     assert np.isin(unit * x[[0]], positions).all()
     if np.isfinite(length):
         assert np.isin(unit * x[[-1]], positions).all()
@@ -67,5 +67,5 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     # The interpolation never has more positions than the original.
     for count in range(2, 160):
         nodes = np.linspace(0.0, 3.0, count)
-        variant = graded_interpolation(unit * nodes, unit * length)
-        assert variant is None or variant[0].size < count
+        scaled_interpolation = graded_interpolation(unit * nodes, unit * length)
+        assert scaled_interpolation is None or scaled_interpolation[0].size < count

@@ -56,7 +56,7 @@ def integrate_rates(
     isotropic, kinematic = hardening
     strain, accumulated = np.zeros(6), 0.0
 
-    def residual_stress_of(plastic: np.ndarray) -> np.ndarray:
+    def compute_residual_stress(plastic: np.ndarray) -> np.ndarray:
         xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
         return -np.array([xx, yy, 0, YOUNG / (1 + POISSON) * plastic[3], 0, 0])
 
@@ -67,19 +67,19 @@ def integrate_rates(
                 stress = (
                     stress_before
                     + (substep + 1) / substeps * (stress_after - stress_before)
-                    + residual_stress_of(strain)
+                    + compute_residual_stress(strain)
                 )
                 deviator = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
                 norm = np.sqrt((component_counts * deviator**2).sum())
                 if norm > yield_radius + np.sqrt(2 / 3) * isotropic * accumulated:
                     # The stress returns along the normal; the body responds to the flow by `residual_of`.
                     normal = deviator / norm
-                    slope = -(component_counts * normal * residual_stress_of(normal)).sum() + 2 / 3 * (
+                    slope = -(component_counts * normal * compute_residual_stress(normal)).sum() + 2 / 3 * (
                         kinematic + isotropic
                     )
                     step = (norm - yield_radius - np.sqrt(2 / 3) * isotropic * accumulated) / slope
                     strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
-    return residual_stress_of(strain)[:2]
+    return compute_residual_stress(strain)[:2]
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def solve_profile(steel: Material) -> Callable[..., xr.Dataset]:
     return solve_roller
 
 
-def axial_results(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def list_axial_results(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Distance from mid-length over half the length, largest pressure over p0, and load per length over its mean."""
     half_length = 0.5 * result.attrs["length"]
     step = float(result["y"][1] - result["y"][0])

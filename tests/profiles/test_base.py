@@ -61,12 +61,14 @@ def test_drop_is_symmetric_and_increases_outwards(profile: Profile, x: float) ->
 @given(first_profile=SYMMETRIC_PROFILES, second_profile=SYMMETRIC_PROFILES, third_profile=SYMMETRIC_PROFILES)
 def test_sum_adds_the_drops(first_profile: Profile, second_profile: Profile, third_profile: Profile) -> None:
     x = LENGTH * np.linspace(-0.49, 0.49, 15)
-    total = first_profile + second_profile + third_profile  # type: ignore[operator]
+    sum_profile = first_profile + second_profile + third_profile  # type: ignore[operator]
     assert (
-        total == Sum((first_profile, second_profile, third_profile)) == first_profile + (second_profile + third_profile)
+        sum_profile
+        == Sum((first_profile, second_profile, third_profile))
+        == first_profile + (second_profile + third_profile)
     )  # type: ignore[operator]
     np.testing.assert_array_equal(
-        total.drop(x, LENGTH),
+        sum_profile.drop(x, LENGTH),
         first_profile.drop(x, LENGTH) + second_profile.drop(x, LENGTH) + third_profile.drop(x, LENGTH),
     )
 
@@ -79,8 +81,8 @@ def test_user_profile_needs_only_a_drop() -> None:
     x = np.array([-1e-3, 2e-3])
     roller = Roller(radius=RADIUS, length=LENGTH, profile=Wedge())
     np.testing.assert_array_equal(roller.clearance(x, np.array([0.0]))[:, 0], 1e-4 * np.abs(x))
-    for combined in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
-        np.testing.assert_allclose(combined.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
+    for combined_profile in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
+        np.testing.assert_allclose(combined_profile.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
     np.testing.assert_array_equal(local_radius(Wedge(), x, LENGTH, RADIUS), [RADIUS, RADIUS])
 
 
@@ -105,9 +107,9 @@ def test_invalid_drops_of_a_user_profile_are_rejected(drop, message: str) -> Non
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())
     if "very ends" not in message:
-        for combined in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
+        for combined_profile in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
             with pytest.raises(InvalidInputError, match="profile = "):
-                combined.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
+                combined_profile.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
 
 
 def test_nan_drop_near_the_end_is_rejected() -> None:
@@ -172,9 +174,9 @@ def test_numbers_beyond_arithmetic_are_rejected(create) -> None:
 
 def test_sum_keeps_the_radius_of_a_cone(positions: np.ndarray) -> None:
     cone = Tapered(half_angle=0.05)
-    for combined in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
+    for combined_profile in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
         np.testing.assert_array_equal(
-            combined.local_radius(positions, LENGTH, RADIUS), cone.local_radius(positions, LENGTH, RADIUS)
+            combined_profile.local_radius(positions, LENGTH, RADIUS), cone.local_radius(positions, LENGTH, RADIUS)
         )
 
 

@@ -27,9 +27,9 @@ CROWN = FullCrown(0.8)
 
 def test_drop_within_the_effective_length(positions: np.ndarray) -> None:
     effective_length = 0.9 * LENGTH
-    inside = positions[np.abs(positions) <= 0.5 * effective_length]
-    assert EffectiveLength(CROWN, effective_length).drop(inside, LENGTH) == pytest.approx(
-        CROWN.drop(inside, effective_length)
+    inner_positions = positions[np.abs(positions) <= 0.5 * effective_length]
+    assert EffectiveLength(CROWN, effective_length).drop(inner_positions, LENGTH) == pytest.approx(
+        CROWN.drop(inner_positions, effective_length)
     )
     assert EffectiveLength(CROWN, LENGTH).drop(positions, LENGTH) == pytest.approx(CROWN.drop(positions, LENGTH))
 
@@ -74,9 +74,9 @@ def test_corner_is_a_circle_up_to_a_right_angle() -> None:
 
 
 def test_radius_across_equals_the_profile(positions: np.ndarray) -> None:
-    inside = positions[np.abs(positions) <= 0.4 * LENGTH]
-    radii = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inside, LENGTH, RADIUS)
-    assert radii == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
+    inner_positions = positions[np.abs(positions) <= 0.4 * LENGTH]
+    radii = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inner_positions, LENGTH, RADIUS)
+    assert radii == pytest.approx(local_radius(Tapered(0.05), inner_positions, 0.8 * LENGTH, RADIUS))
 
 
 def test_infinite_drop_continues_up_to_slope_one() -> None:
@@ -84,8 +84,8 @@ def test_infinite_drop_continues_up_to_slope_one() -> None:
     profile = EffectiveLength(Lundberg(2e-7), effective_length)
     x = np.linspace(0.0, 0.5 * LENGTH, 100001)
     drop = profile.drop(x, LENGTH)
-    inside = x < 0.4999 * effective_length
-    assert drop[inside] == pytest.approx(Lundberg(2e-7).drop(x[inside], effective_length))
+    inner_positions = x < 0.4999 * effective_length
+    assert drop[inner_positions] == pytest.approx(Lundberg(2e-7).drop(x[inner_positions], effective_length))
     assert np.isfinite(drop).all()
     assert (np.diff(drop) >= 0).all()
     assert drop[-1] > 0.05 * LENGTH

@@ -63,8 +63,8 @@ def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None
 def test_drop_of_corner_radius_is_added(positions: np.ndarray) -> None:
     crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
     drop = (crown + corner).drop(positions, LENGTH)
-    inside = np.abs(positions) <= HALF_LENGTH - 0.2e-3
-    np.testing.assert_array_equal(drop[inside], crown.drop(positions, LENGTH)[inside])
+    is_inner = np.abs(positions) <= HALF_LENGTH - 0.2e-3
+    np.testing.assert_array_equal(drop[is_inner], crown.drop(positions, LENGTH)[is_inner])
     assert drop[-1] == pytest.approx(crown.drop(positions, LENGTH)[-1] + 0.2e-3)
 
 
@@ -108,9 +108,9 @@ def test_sphere_equals_an_ellipsoid_of_equal_radius(positions: np.ndarray) -> No
 def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: Material) -> None:
     load, length, crown = 200.0, 4e-3, 8 * RADIUS
     result = solve_profile(Ellipsoid(crown), length, load=load, cells=3, window=5.0)
-    exact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
-    assert float(result["pressure"].max()) == pytest.approx(exact.max_pressure, rel=5e-3)
-    for axis, semi_axis in (("x", exact.long), ("y", exact.short)):
+    exact_contact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
+    assert float(result["pressure"].max()) == pytest.approx(exact_contact.max_pressure, rel=5e-3)
+    for axis, semi_axis in (("x", exact_contact.long), ("y", exact_contact.short)):
         positions = result[axis].values
         other_axis = "y" if axis == "x" else "x"
         loaded_positions = positions[(result["pressure"] > 0).any(other_axis).values]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from contactstudy import InvalidInputError, Material
 from contactstudy.bodies.hertz import line_load
 from contactstudy.profiles import Cylinder, FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
-from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, axial_results
+from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, list_axial_results
 
 HALF_LENGTH = LENGTH / 2
 
@@ -18,9 +18,13 @@ HALF_LENGTH = LENGTH / 2
 def test_lundberg_equals_two_logarithms(positions: np.ndarray) -> None:
     """The drop is a sum of logarithms of the distances to both ends."""
     profile = Lundberg(amplitude=2e-7, delta=1.5)
-    inner = positions[1:-1]
-    expected = -1.5 * 2e-7 * (np.log(HALF_LENGTH - inner) + np.log(HALF_LENGTH + inner) - 2 * np.log(HALF_LENGTH))
-    np.testing.assert_allclose(profile.drop(inner, LENGTH), expected, rtol=1e-12, atol=1e-20)
+    inner_positions = positions[1:-1]
+    expected = (
+        -1.5
+        * 2e-7
+        * (np.log(HALF_LENGTH - inner_positions) + np.log(HALF_LENGTH + inner_positions) - 2 * np.log(HALF_LENGTH))
+    )
+    np.testing.assert_allclose(profile.drop(inner_positions, LENGTH), expected, rtol=1e-12, atol=1e-20)
     assert np.isinf(profile.drop(positions[[0, -1]], LENGTH)).all()
 
 
@@ -43,23 +47,23 @@ def test_lundberg_pressure_is_flat_at_the_design_load(solve_profile, steel: Mate
     The pressure of a sharp cylinder varies by 11 %, that of a delta of 0.7 or 1.4 by more than twice 1.2 %.
     """
 
-    def variation(profile) -> float:
-        position, peak, _ = axial_results(solve_profile(profile, 4e-3))
-        inside = peak[np.abs(position) < 0.9]
-        return float(np.ptp(inside))
+    def compute_variation(profile) -> float:
+        position, peak, _ = list_axial_results(solve_profile(profile, 4e-3))
+        inner_peaks = peak[np.abs(position) < 0.9]
+        return float(np.ptp(inner_peaks))
 
-    def lundberg(delta: float) -> Lundberg:
+    def make_lundberg(delta: float) -> Lundberg:
         return Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus, delta=delta)
 
-    reference = variation(lundberg(1.0))
-    assert reference < 0.012
-    assert variation(Cylinder()) > 0.1
-    assert min(variation(lundberg(0.7)), variation(lundberg(1.4))) > 2 * reference
+    reference_variation = compute_variation(make_lundberg(1.0))
+    assert reference_variation < 0.012
+    assert compute_variation(Cylinder()) > 0.1
+    assert min(compute_variation(make_lundberg(0.7)), compute_variation(make_lundberg(1.4))) > 2 * reference_variation
 
 
 def test_lundberg_pressure_decreases_outwards_below_the_design_load(solve_profile, steel: Material) -> None:
     profile = Lundberg.for_pressure(2 * PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
-    position, peak, _ = axial_results(solve_profile(profile, 4e-3))
+    position, peak, _ = list_axial_results(solve_profile(profile, 4e-3))
     second_half = position > 0
     assert (np.diff(peak[second_half]) <= 0).all()
     assert np.interp(0.9, position, peak) < 0.8
@@ -93,10 +97,10 @@ def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_widt
 @given(st.floats(1e-9, 1e-5))
 def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
     x = HALF_LENGTH * np.linspace(-0.999, 0.999, 41)
-    lundberg = Lundberg(amplitude).drop(x, LENGTH)
-    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
+    make_lundberg = Lundberg(amplitude).drop(x, LENGTH)
+    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), make_lundberg, rtol=1e-12)
     deep_profile = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
-    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
+    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), make_lundberg, rtol=1e-9, atol=1e-12 * amplitude)
 
 
 def test_fujiwara_and_kawase_equals_paper(positions: np.ndarray) -> None:
@@ -168,8 +172,8 @@ def test_short_iso_profile_equals_standard() -> None:
 def test_long_iso_profile_equals_standard() -> None:
     length = 40.0
     x = np.linspace(-19.9, 19.9, 81)
-    inside = np.abs(x) - (length - 25.0) / 2
-    expected = np.where(inside > 0, 0.0005 * 10 * np.log(1 / (1 - (inside / 12.5) ** 2)), 0.0)
+    crowned_distance = np.abs(x) - (length - 25.0) / 2
+    expected = np.where(crowned_distance > 0, 0.0005 * 10 * np.log(1 / (1 - (crowned_distance / 12.5) ** 2)), 0.0)
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 40e-3), expected, rtol=1e-9, atol=1e-18)
 
 

@@ -23,7 +23,7 @@ DROP = CROWN.drop(X - LENGTH / 2, LENGTH)
 
 def write_csv(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
     path = folder / "trace.csv"
-    lines = [f"{1e3 * a:.9g}, {1e6 * b:.9g}" for a, b in zip(x, drop, strict=True)]
+    lines = [f"{1e3 * a:.9g}, {1e6 * height:.9g}" for a, height in zip(x, drop, strict=True)]
     path.write_text("\n".join(["# stylus 2 um", header, *lines]))
     return path
 
@@ -47,9 +47,19 @@ def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> N
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("brackets", ["[]", "()"])
 def test_csv_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
-    (left, right), path = brackets, tmp_path / "trace.txt"
-    rows = [f"{k}{separator}{0.001 * k}{separator}note" for k in range(7)]
-    path.write_text("\n".join([separator.join((f"X {left}mm{right}", f"Height {left}µm{right}", "remark")), "", *rows]))
+    (left_bracket, right_bracket), path = brackets, tmp_path / "trace.txt"
+    rows = [f"{row}{separator}{0.001 * row}{separator}note" for row in range(7)]
+    path.write_text(
+        "\n".join(
+            [
+                separator.join(
+                    (f"X {left_bracket}mm{right_bracket}", f"Height {left_bracket}µm{right_bracket}", "remark")
+                ),
+                "",
+                *rows,
+            ]
+        )
+    )
     profile = Measured.from_file(path, remove_offset=True)
     np.testing.assert_allclose(profile.positions, 1e-3 * np.arange(7))
     np.testing.assert_allclose(profile.drops, 1e-9 * np.arange(6, -1, -1), atol=1e-22)
@@ -95,10 +105,12 @@ def test_interpolation_contains_the_points(positions: np.ndarray) -> None:
 
 def test_crown_and_measured_waviness_add_up(positions: np.ndarray) -> None:
     waviness = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
-    combined = Lundberg(2e-7) + waviness
-    inner = positions[1:-1]
-    expected = Lundberg(2e-7).drop(inner, LENGTH) + 0.1e-6 * (1 - np.cos(2 * np.pi * (inner + 5e-3) / 2e-3))
-    np.testing.assert_allclose(combined.drop(inner, LENGTH), expected, atol=1.5e-10)
+    combined_profile = Lundberg(2e-7) + waviness
+    inner_positions = positions[1:-1]
+    expected = Lundberg(2e-7).drop(inner_positions, LENGTH) + 0.1e-6 * (
+        1 - np.cos(2 * np.pi * (inner_positions + 5e-3) / 2e-3)
+    )
+    np.testing.assert_allclose(combined_profile.drop(inner_positions, LENGTH), expected, atol=1.5e-10)
 
 
 @pytest.mark.parametrize(

@@ -14,11 +14,13 @@ X = np.linspace(0.0, 12e-3, 2401)
 def test_transmission_equals_the_standard(wavelength_ratio: float, is_uneven: bool) -> None:
     """The transmission is ``2**-(cutoff / wavelength)**2``, half at the cut-off."""
     x = X + (2e-6 * np.sin(40 * X / X[-1]) if is_uneven else 0.0)
-    inner = slice(180, -180)  # the slice excludes 0.9 mm on either side
+    inner_slice = slice(180, -180)  # the slice excludes 0.9 mm on either side
     for phase in (0.0, 1.0):
         sine = np.sin(2 * np.pi * x / (wavelength_ratio * CUTOFF) + phase)
         filtered = filter_gaussian(x, sine, CUTOFF)
-        np.testing.assert_allclose(filtered[inner], 0.5 ** (1 / wavelength_ratio**2) * sine[inner], atol=5e-6)
+        np.testing.assert_allclose(
+            filtered[inner_slice], 0.5 ** (1 / wavelength_ratio**2) * sine[inner_slice], atol=5e-6
+        )
 
 
 def test_filter_preserves_straight_lines() -> None:
@@ -31,8 +33,8 @@ def test_filtered_parabola_shifts_by_the_closed_form() -> None:
     crown = (X - 6e-3) ** 2 / 2
     shift = filter_gaussian(X, crown, CUTOFF) - crown
     expected = 0.5 * (np.log(2) / (2 * np.pi**2)) * CUTOFF**2
-    inner = slice(180, -180)
-    np.testing.assert_allclose(shift[inner], expected, rtol=1e-4)
+    inner_slice = slice(180, -180)
+    np.testing.assert_allclose(shift[inner_slice], expected, rtol=1e-4)
     assert np.abs(shift).max() < 1.001 * expected
     shift_of_mean = 0.5 * 6e-3 * CUTOFF * np.sqrt(np.log(2)) / np.pi**1.5  # half a weight extends beyond the end
     assert abs(shift[0]) < 0.03 * shift_of_mean

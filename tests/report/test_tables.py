@@ -29,12 +29,16 @@ def test_summary_states_error_or_missing_error(case_result: xr.Dataset) -> None:
     for name in ("peak_pressure", "contact_length", "peak_von_mises_z"):
         assert "error not estimated" in summary(case_result)[name].remark, name
         assert summary(case_result)[name].mark == "not estimated", name
-    refined = case_result.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
-    row = summary(refined)["peak_pressure"]
+    refined_result = case_result.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
+    row = summary(refined_result)["peak_pressure"]
     assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")
-    assert summary(refined.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith("error not estimated")
-    assert summary(refined.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
-    table = summary(refined).to_dataframe()
+    assert summary(refined_result.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith(
+        "error not estimated"
+    )
+    assert (
+        summary(refined_result.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
+    )
+    table = summary(refined_result).to_dataframe()
     assert table.loc["peak_pressure", "error"] == 0.0121e9
 
 
@@ -134,16 +138,16 @@ def test_summary_of_corner_has_law(case_result: xr.Dataset) -> None:
     assert {summary_table[name].value for name in law if not name.endswith("_error")} == {5e-3, 0.02, 7.3e8, 54e-6}
     assert summary_table["corner_distance"].text == "54.0 ± 1.3 µm"
     assert summary_table["corner_x"].remark == ""
-    sharp = case_result.assign(dict.fromkeys(law, np.nan) | peak)
-    assert not {"corner_x", "corner_distance"} & set(summary(sharp).to_dataframe().index)
-    assert summary(sharp)["peak_pressure"].remark == "singular: unbounded towards a sharp end"
-    assert "sharp end" in assess(sharp).verdict
+    sharp_result = case_result.assign(dict.fromkeys(law, np.nan) | peak)
+    assert not {"corner_x", "corner_distance"} & set(summary(sharp_result).to_dataframe().index)
+    assert summary(sharp_result)["peak_pressure"].remark == "singular: unbounded towards a sharp end"
+    assert "sharp end" in assess(sharp_result).verdict
 
 
 def test_assessment_depends_on_certificate(case_result: xr.Dataset) -> None:
     """Each answer changes with its number."""
 
-    def rate(criterion: str, **changes: object) -> str:
+    def find_answer(criterion: str, **changes: object) -> str:
         answers = assess(case_result.assign(changes)).criteria
         return next(entry.answer for entry in answers if entry.question.startswith(criterion))
 
@@ -157,8 +161,8 @@ def test_assessment_depends_on_certificate(case_result: xr.Dataset) -> None:
         "Is the largest stress": ({"peak_von_mises_error": 1e7}, {"peak_von_mises_error": np.inf}),
     }
     for criterion, (good_case, bad_case) in cases.items():
-        assert rate(criterion, **good_case) == "yes", criterion
-        assert rate(criterion, **bad_case) in ("with care", "no"), criterion
+        assert find_answer(criterion, **good_case) == "yes", criterion
+        assert find_answer(criterion, **bad_case) in ("with care", "no"), criterion
     assert assess(case_result.assign(converged=False)).overall == "no"
     without_peak = case_result.drop_vars(
         [name for name in case_result.data_vars if str(name).startswith("peak_von_mises")]

@@ -20,7 +20,7 @@ from contactstudy.solution import contact_on_cells
 
 @pytest.mark.parametrize(
     ("friction", "force_fraction"),
-    [(0.3, 0.25), *(pytest.param(*pair, marks=pytest.mark.slow) for pair in [(0.5, 0.8), (1.0, 0.5)])],
+    [(0.3, 0.25), *(pytest.param(*parameters, marks=pytest.mark.slow) for parameters in [(0.5, 0.8), (1.0, 0.5)])],
 )
 def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
     result = check_stress_maximum(friction, force_fraction, max_error=0.03)
@@ -80,11 +80,11 @@ def find_stress_maximum_on_cells(case: cs.Case, grid: cs.Grid) -> StressMaximum:
     solution = contact_on_cells(case, grid, None, 1e-6)
     loads, pressure = solution.tractions.loads, solution.contact.pressure
 
-    def stress_at(points: Points) -> FloatArray:
+    def compute_stress(points: Points) -> FloatArray:
         return stresses_at(case.body, loads, grid, [points], pressure)[0]
 
     search = place_search(case.body, loads, grid, case.roller.material)
-    return find_stress_maximum(search, [stress_at(points) for points in search.samples], stress_at)
+    return find_stress_maximum(search, [compute_stress(points) for points in search.samples], compute_stress)
 
 
 def test_command_compares_with_carter(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

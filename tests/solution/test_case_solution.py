@@ -83,10 +83,14 @@ def test_certificate_is_within_tolerance(result) -> None:
 
 
 def test_normal_stress_on_top_equals_pressure(result) -> None:
-    top = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
-    is_inner = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure curves within a cell
+    surface_stresses = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
+    is_inner = (
+        surface_stresses["pressure"].values > 0.75e9
+    )  # nearer to the contact's border the pressure curves within a cell
     for stress, load, bound in (("sigma_zz", "pressure", 1.5e-2), ("tau_yz", "traction_y", 1.5e-3)):
-        assert np.abs(top[stress].values + top[load].values)[is_inner].max() < bound * 1.5e9, stress
+        assert (
+            np.abs(surface_stresses[stress].values + surface_stresses[load].values)[is_inner].max() < bound * 1.5e9
+        ), stress
 
 
 def test_result_survives_netcdf(result, tmp_path) -> None:
@@ -159,11 +163,11 @@ def test_rolling_case_stresses_include_tractions() -> None:
     result = solve(case, grid, z=[0.0, 5e-5])
     assert result.converged
     assert 0 < int(result.stick.sum()) < int((result.pressure > 0).sum())
-    top = result.isel(z=0)
-    inner = {"x": slice(2, -2)}
+    surface_stresses = result.isel(z=0)
+    inner_cells = {"x": slice(2, -2)}
     peak = float(result.pressure.max())
     for stress, load in (("tau_yz", "traction_y"), ("tau_xz", "traction_x"), ("sigma_zz", "pressure")):
-        assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
+        assert float(np.abs(surface_stresses[stress] + result[load]).isel(inner_cells).max()) < 2e-2 * peak, stress
     assert float(result.end_traction_residual) < 2e-4
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
     roller_stresses = roller_stress(case, result.pressure, z=[5e-5], **tractions)

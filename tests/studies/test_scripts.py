@@ -101,9 +101,9 @@ def test_regime_map_states_distance_of_small_errors():
         {"end_load_first": (("e_over_a", "gamma"), values)},
         {"e_over_a": [0.0, 1.0, 2.0, 4.0], "gamma": [3.0, 2.0, 1.0]},
     )
-    limit = module.limits(error)["end_load_first"]
-    np.testing.assert_array_equal(limit.sel(below=5.0), [2.0, np.nan, 0.0])
-    np.testing.assert_array_equal(limit.sel(below=1.0), [2.0, np.nan, 0.0])
+    bound = module.limits(error)["end_load_first"]
+    np.testing.assert_array_equal(bound.sel(below=5.0), [2.0, np.nan, 0.0])
+    np.testing.assert_array_equal(bound.sel(below=1.0), [2.0, np.nan, 0.0])
 
 
 def test_regime_map_checks_accuracy():
@@ -143,9 +143,11 @@ def test_elastic_roller_is_softer_at_ends():
         assert float(flush_raceway[name].sel(model=elastic)) == pytest.approx(
             float(flush_raceway[name].sel(model=rigid)), rel=2e-3
         )
-        first, second = (float(raceway[name].sel(model="half-spaces")) for raceway in (wide_raceway, flush_raceway))
+        first_value, second_value = (
+            float(raceway[name].sel(model="half-spaces")) for raceway in (wide_raceway, flush_raceway)
+        )
         # The search for the largest stress starts from different points.
-        assert first == pytest.approx(second, rel=1e-6 if name == "end_load" else 1e-4)
+        assert first_value == pytest.approx(second_value, rel=1e-6 if name == "end_load" else 1e-4)
     for table in (module.table, module.load_table):
         assert "| Lundberg |" in table(result.isel(raceway=0))
         assert "±" in table(result.isel(raceway=0))
@@ -286,10 +288,10 @@ def test_shakedown_is_drawn_beside_the_line_contact(tmp_path):
     johnson_limit = line_contact_result["along rolling and axis (Johnson)"]
     assert float(johnson_limit.sel(friction=0.0)) == pytest.approx(4.0, rel=5e-3)
     # A crowned roller endures less than the line contact; far inside the face the pressure at its end is high.
-    limit = result["shakedown_limit"].isel(profile=0)
-    assert (limit < line_contact_result["along rolling"]).all()
-    assert (limit.sel(e_over_a=4.0) < limit.sel(e_over_a=0.0)).all()
-    assert (limit.sel(friction=0.2) < limit.sel(friction=0.0)).all()
+    bound = result["shakedown_limit"].isel(profile=0)
+    assert (bound < line_contact_result["along rolling"]).all()
+    assert (bound.sel(e_over_a=4.0) < bound.sel(e_over_a=0.0)).all()
+    assert (bound.sel(friction=0.2) < bound.sel(friction=0.0)).all()
     assert float(module.stated_errors(result).max()) < 0.1
     assert len(module.draw(result, line_contact_result).axes) == 3
     assert module.table(result, line_contact_result).count("\n") == 6
@@ -298,15 +300,16 @@ def test_shakedown_is_drawn_beside_the_line_contact(tmp_path):
 def test_residual_stress_at_free_end_is_small():
     module = load_script("residual_stress")
     result = module.roll_passes(module.Task(length=0.6e-3, cells_x=12, cells_z=9, positions_y=31, passes=3))
-    end, near_end, mid_length = module.select_depths(result).values()
+    end_depths, near_end_depths, mid_length_depths = module.select_depths(result).values()
     along_axis = [
-        float(abs(position["sigma_xx"].isel(pass_number=-1)).max()) for position in (end, near_end, mid_length)
+        float(abs(position["sigma_xx"].isel(pass_number=-1)).max())
+        for position in (end_depths, near_end_depths, mid_length_depths)
     ]
     assert along_axis[0] < 0.2 * min(along_axis[1:])
     # Rolling leaves compression in the yielded middle.
-    assert float(mid_length["sigma_yy"].isel(pass_number=-1).min()) < -0.05
-    first, *_, last = module.flow(near_end).values
-    assert 0 < last < 0.02 * first
+    assert float(mid_length_depths["sigma_yy"].isel(pass_number=-1).min()) < -0.05
+    first_value, *_, last_value = module.flow(near_end_depths).values
+    assert 0 < last_value < 0.02 * first_value
     assert len(module.draw(result).axes) == 5
     assert "| in the middle |" in module.table(result)
 

@@ -14,13 +14,13 @@ from contactstudy.study import Study
 from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.plan import PlannedCase
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
 
 ROOT = Path(__file__).parents[2]
 
 
-def tickets_of(folder: Path) -> Path:
+def locate_tickets(folder: Path) -> Path:
     """Folder of the tickets of a run that writes to `folder`."""
     return folder.with_name(f"{folder.name}-tickets")
 
@@ -32,7 +32,7 @@ def start_run(
 
     `prefix` is a prefix of the command, for example to run it in a container.
     """
-    initial_tickets = tickets_of(folder)
+    initial_tickets = locate_tickets(folder)
     give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
@@ -64,7 +64,7 @@ def study() -> Study:
 @pytest.fixture
 def study_file(tmp_path: Path) -> Path:
     path = tmp_path / "small.toml"
-    path.write_text(as_toml(small_study()))
+    path.write_text(format_toml(small_study()))
     return path
 
 

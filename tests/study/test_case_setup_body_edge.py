@@ -14,7 +14,7 @@ from contactstudy.study import Study, load_case, open_study, run_study
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.profile_tables import PROFILES
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 from tests.study.test_profile_tables import EXAMPLES
 
 OVERHANG = {key: value for key, value in BASE.items() if not key.startswith("field")} | {"end_distance": -5e-5}
@@ -60,7 +60,7 @@ def test_swept_edges_equal_solved_cases(tmp_path: Path) -> None:
     study = small_study(base=OVERHANG | {"stresses": False}, sweep={"body_edge": EDGES}, level="surface")
     path = tmp_path / "small.toml"
     without_edges = small_study(base=OVERHANG | {"stresses": False}, sweep={}, level="surface")
-    path.write_text(as_toml(without_edges) + TABLES)
+    path.write_text(format_toml(without_edges) + TABLES)
     assert Study.from_toml(path) == study == Study.from_mapping(json.loads(study.to_json()))
     assert run_study(study, tmp_path / "results", workers=0, progress=False).counts == {"ok": 3}
     dataset = open_study(tmp_path / "results", cells="original")

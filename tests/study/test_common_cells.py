@@ -99,32 +99,35 @@ def test_refined_columns_share_common_axis(tmp_path):
     sweep = {"max_pressure": [1.0e9, 1.5e9], "e_over_a": [0.0, 2.0]}
     study = small_study(base=base, sweep=sweep, level="surface")
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 4}
-    common, original = open_study(tmp_path), open_study(tmp_path, cells="original")
-    assert common["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
-    assert original["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
-    assert "averaged" in common["pressure"].attrs["comment"]
+    common_dataset, original_dataset = open_study(tmp_path), open_study(tmp_path, cells="original")
+    assert common_dataset["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
+    assert original_dataset["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
+    assert "averaged" in common_dataset["pressure"].attrs["comment"]
     for p0 in (1.0e9, 1.5e9):
-        for e in (0.0, 2.0):
+        for end_distance in (0.0, 2.0):
             common_case, original_case = (
-                study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original)
+                study_dataset.sel(max_pressure=p0, e_over_a=end_distance)
+                for study_dataset in (common_dataset, original_dataset)
             )
             # Common cells preserve the total load and, with a fine axis, the load on the last half-width.
             total_load = load_between(common_case, -np.inf, np.inf)
             assert float(total_load) == pytest.approx(float(original_case["normal_load"]), rel=1e-6)
-            a = float(original_case["hertz_half_width"])
-            last = load_between(original_case, e * a, (e + 1) * a)
-            assert float(last) == pytest.approx(float(original_case["end_load_first"]), rel=1e-6, abs=1e-9)
+            half_width = float(original_case["hertz_half_width"])
+            last_load = load_between(original_case, end_distance * half_width, (end_distance + 1) * half_width)
+            assert float(last_load) == pytest.approx(float(original_case["end_load_first"]), rel=1e-6, abs=1e-9)
             single = single_case(original_case)
             assert single["pressure"].dims == ("x", "y")
             assert single["x_width"].dims == ("x",)
             assert float(single["pressure"].max()) >= float(common_case["pressure"].max())
     # All parameters of a bearing engineer are present, swept or not.
-    assert common["gamma"].dims == ("max_pressure", "e_over_a")
+    assert common_dataset["gamma"].dims == ("max_pressure", "e_over_a")
     np.testing.assert_allclose(
-        common["gamma"], (0.3e-3 + 2 * common["e_over_a"] * common["hertz_half_width"]).T / 5e-3, rtol=1e-12
+        common_dataset["gamma"],
+        (0.3e-3 + 2 * common_dataset["e_over_a"] * common_dataset["hertz_half_width"]).T / 5e-3,
+        rtol=1e-12,
     )
-    assert float(common["friction"]) == 0.1
-    assert common["profile"].item().startswith("cylinder")
+    assert float(common_dataset["friction"]) == 0.1
+    assert common_dataset["profile"].item().startswith("cylinder")
 
 
 @given(draw_edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
@@ -182,10 +185,10 @@ def test_stresses_on_the_ends_of_every_case(tmp_path, has_stated_points):
         cases = [{name: case[name] for name in ("body", "e_over_a")} for case in cases]
     study = small_study(base=base, sweep={}, cases=cases)
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 3}
-    common, original = open_study(tmp_path), open_study(tmp_path, cells="original")
-    for case_index in np.argwhere(original["status"].values == "ok").tolist():
-        selection = dict(zip(original["status"].dims, case_index, strict=True))
-        common_case, original_case = (dataset.isel(selection) for dataset in (common, original))
+    common_dataset, original_dataset = open_study(tmp_path), open_study(tmp_path, cells="original")
+    for case_index in np.argwhere(original_dataset["status"].values == "ok").tolist():
+        selection = dict(zip(original_dataset["status"].dims, case_index, strict=True))
+        common_case, original_case = (dataset.isel(selection) for dataset in (common_dataset, original_dataset))
         points = original_case["x_field"].dropna("x_field_index") / original_case["hertz_half_width"]
         for index in (0, -1):
             common_stress = common_case["von_mises"].sel(x_over_a=points.values[index], method="nearest")

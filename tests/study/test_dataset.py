@@ -61,7 +61,9 @@ def test_fields_are_lazy(study_dataset, folder):
 
 def test_different_stress_points_share_common_axis(tmp_path):
     base = {name: value for name, value in BASE.items() if name != "field_x_over_a"}
-    cases = [{"e_over_a": e, "field_x_over_a": [0.0, 0.5 + e, 2.0, 4.0]} for e in (0.0, 1.0)]
+    cases = [
+        {"e_over_a": end_distance, "field_x_over_a": [0.0, 0.5 + end_distance, 2.0, 4.0]} for end_distance in (0.0, 1.0)
+    ]
     run_study(small_study(base=base, sweep={}, cases=cases), tmp_path, workers=0, solver=solve_fake)
     study_dataset = open_study(tmp_path)
     assert study_dataset["von_mises"].dims[-3:] == ("x_over_a", "y_field_over_a", "z_over_a")

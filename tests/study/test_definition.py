@@ -6,7 +6,7 @@ import pytest
 
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, StudyFileError
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 
 
 def list_ids(study):
@@ -24,7 +24,7 @@ def test_toml_equals_python_study(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "profile": ["cylinder"]})
     path = tmp_path / "small.toml"
     path.write_text(
-        as_toml(small_study(sweep={"e_over_a": [0, 1]})) + '[[sweep.profile]]\nname = "sharp"\nkind = "cylinder"\n'
+        format_toml(small_study(sweep={"e_over_a": [0, 1]})) + '[[sweep.profile]]\nname = "sharp"\nkind = "cylinder"\n'
     )
     assert list_ids(Study.from_toml(path)) == list_ids(study)
 
@@ -56,13 +56,21 @@ def test_zip_without_distinct_values_is_numbered():
 
 
 def test_complete_explicit_cases_form_cube():
-    cases = [{"e_over_a": e, "friction": f} for e in (0, 1) for f in (0, 0.1)]
+    cases = [{"e_over_a": end_distance, "friction": friction} for end_distance in (0, 1) for friction in (0, 0.1)]
     assert list_ids(small_study(sweep={}, cases=cases)) == list_ids(small_study())
     assert small_study(sweep={}, cases=cases).plan().cube.dims == ("e_over_a", "friction")
 
 
 def test_sparse_explicit_cases_are_listed():
-    cases = [{"e_over_a": n, "friction": n / 10, "poisson": n / 20, "max_pressure": (1 + n) * 1e9} for n in range(5)]
+    cases = [
+        {
+            "e_over_a": case_index,
+            "friction": case_index / 10,
+            "poisson": case_index / 20,
+            "max_pressure": (1 + case_index) * 1e9,
+        }
+        for case_index in range(5)
+    ]
     cube = small_study(sweep={}, cases=cases).plan().cube
     assert cube.dims == ("case",)
     assert cube.labels["poisson"][0] == "case"

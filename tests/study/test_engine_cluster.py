@@ -11,10 +11,10 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study import StudyFileError, engine, load_case, open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
-from tests.small_study import BASE, as_toml, identity, small_study
+from tests.small_study import BASE, format_toml, identity, small_study
 from tests.stand_in_solver import DIES, HELD, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
-from tests.study.conftest import start_run, tickets_of
+from tests.study.conftest import locate_tickets, start_run
 
 SHORT = {"roller_length": 0.2e-3}  # solved in half of the time
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
@@ -85,9 +85,11 @@ def test_worker_of_wrong_version_is_excluded(study, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
-    monkeypatch.setenv(HELD, str(tickets_of(tmp_path / "out")))  # workers inherit the variable and wait for tickets
+    monkeypatch.setenv(HELD, str(locate_tickets(tmp_path / "out")))  # workers inherit the variable and wait for tickets
     file = tmp_path / "long.toml"
-    file.write_text(as_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]})))
+    file.write_text(
+        format_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]}))
+    )
     with cluster(tmp_path, workers=1) as address:
         process = start_run(file, tmp_path / "out", "--scheduler", address, tickets=2)
         deadline = time.monotonic() + 200

@@ -58,12 +58,14 @@ def test_defaults_match_stored_cases():
 
 
 def test_new_table_entry_adds_parameter(monkeypatch):
-    def consumer(case: Case, *, sharpness: float = 0.5) -> None: ...
+    def call_parameter_consumer(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new_parameter = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=consumer)
+    new_parameter = Parameter(
+        name="sharpness", check=check_number, units="1", meaning="made up", consumer=call_parameter_consumer
+    )
     monkeypatch.setitem(PARAMETERS, "sharpness", new_parameter)
     assert new_parameter.default == 0.5
-    assert keywords_of(consumer, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
+    assert keywords_of(call_parameter_consumer, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 
 def test_study_uses_default_grid():

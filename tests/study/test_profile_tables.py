@@ -14,7 +14,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.profile_tables import PROFILES, format_profile, profile_table
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
 
@@ -81,7 +81,7 @@ def test_documented_profiles_are_valid(tmp_path: Path) -> None:
     )[0]
     write_trace(tmp_path / "traces", name="roller_7.csv")
     path = tmp_path / "documented.toml"
-    path.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
+    path.write_text(format_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
     plan = Study.from_toml(path).plan()
     assert (len(plan), plan.skipped) == (2, [])
 
@@ -142,7 +142,7 @@ def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -
         "[[sweep.profile]]\nkind = 'sum'\nname = 'both'",
         "terms = [{ kind = 'measured', file = 'traces/trace.csv' }, 'cylinder']",
     ]
-    file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + "\n".join(lines))
+    file.write_text(format_toml(small_study(sweep={"e_over_a": [1.0]})) + "\n".join(lines))
     monkeypatch.chdir(ROOT)
     study = Study.from_toml(file)
     monkeypatch.chdir(tmp_path)

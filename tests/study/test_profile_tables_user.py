@@ -122,7 +122,7 @@ def test_unpicklable_profile_raises() -> None:
             raise TypeError("bound to a file")
 
     with pytest.raises(
-        InvalidInputError, match=r"'Bound': must be an object that can be pickled.*bound to a file.*list"
+        InvalidInputError, match=r"'UnpicklableWedge': must be an object that can be pickled.*bound to a file.*list"
     ):
         Study(name="refused", base={"profile": UnpicklableWedge(1e-4)})
 

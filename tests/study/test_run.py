@@ -188,7 +188,7 @@ def test_uncreatable_folder_raises(study, tmp_path):
 
 
 @contextlib.contextmanager
-def ordinary_user():
+def become_ordinary_user():
     """User without root's right to write anywhere."""
     if os.geteuid() != 0:
         yield
@@ -223,7 +223,7 @@ def test_folder_without_permission_raises(study, open_folder, closed_folder):
     for path in (folder, *folder.glob("**/*")):
         path.chmod(0o777)
     (folder / closed_folder).chmod(0o555)
-    with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
+    with become_ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
         run(larger_study, folder)
     (folder / closed_folder).chmod(0o777)
     assert not Folder(folder).holders
@@ -235,7 +235,7 @@ def test_folder_without_permission_raises(study, open_folder, closed_folder):
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
 def test_forbidden_folder_raises(study, open_folder):
     open_folder.chmod(0o555)
-    with ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
+    with become_ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
         run(study, open_folder / "new")
 
 

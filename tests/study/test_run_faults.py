@@ -9,7 +9,7 @@ from contactstudy.cli import main
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.study import Study, StudyFileError, open_study, run_study
 from contactstudy.study.case_setup import build_setup
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 
@@ -115,7 +115,7 @@ def test_written_files_replace_links(tmp_path):
     for name in names:
         (folder / name).symlink_to(target)
     path = tmp_path / "small.toml"
-    path.write_text(as_toml(small_study()))
+    path.write_text(format_toml(small_study()))
     assert main(["run", str(path), "--out", str(folder), "--workers", "0"], solver=solve_fake) == 0
     assert not target.exists()
     assert not any((folder / name).is_symlink() for name in names)
@@ -136,5 +136,5 @@ def test_measured_profile_of_too_many_points_raises():
 
 def test_byte_order_mark_is_accepted(tmp_path):
     path = tmp_path / "marked.toml"
-    path.write_text("\ufeff" + as_toml(small_study()), encoding="utf-8")
+    path.write_text("\ufeff" + format_toml(small_study()), encoding="utf-8")
     assert len(Study.from_toml(path).plan()) == 4

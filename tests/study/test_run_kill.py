@@ -9,9 +9,9 @@ import pytest
 
 from contactstudy.study import run_study
 from contactstudy.study.folder import Folder
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import give_tickets, solve_fake
-from tests.study.conftest import count_finished, has_intact_batches, start_run, tickets_of
+from tests.study.conftest import count_finished, has_intact_batches, locate_tickets, start_run
 
 SECONDS = 300.0
 """Longest wait for another process, so large that slow machines pass."""
@@ -34,7 +34,7 @@ def kill_group(process):
 @pytest.fixture
 def large_study_file(tmp_path):
     path = tmp_path / "large.toml"
-    path.write_text(as_toml(small_study("large", sweep=LARGE)))
+    path.write_text(format_toml(small_study("large", sweep=LARGE)))
     return path
 
 
@@ -87,7 +87,7 @@ def test_concurrent_run_is_refused(large_study_file, tmp_path):
     _, errors = second_process.communicate(timeout=SECONDS)
     assert second_process.returncode == 2
     assert f"process {first_process.pid} on " in errors
-    give_tickets(tickets_of(folder), 19)
+    give_tickets(locate_tickets(folder), 19)
     output, errors = first_process.communicate(timeout=SECONDS)
     assert first_process.returncode == 0, errors
     assert "20 ok" in output

@@ -58,8 +58,8 @@ def test_study_over_end_models(tmp_path):
         float(residual.sel(model=model)) for model in ("exact", "single-mirror", "mirror")
     )
     assert exact_residual < 3e-4 < single_residual < mirror_residual  # the depths begin at 0.02 a
-    ends = dataset["end_pressure_over_p0"].sel(body="finite-length").values
-    assert len({round(pressure, 4) for pressure in ends.tolist()}) == 3
+    end_pressures = dataset["end_pressure_over_p0"].sel(body="finite-length").values
+    assert len({round(pressure, 4) for pressure in end_pressures.tolist()}) == 3
 
 
 def test_number_types_have_same_identity(tmp_path):

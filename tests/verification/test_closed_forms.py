@@ -10,7 +10,7 @@ import pytest
 from contactstudy import InvalidInputError
 from contactstudy.verification import closed_forms as ref
 from contactstudy.verification import free_ends
-from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
+from tests.closed_forms import compute_hertz_surface_stress, compute_sliding_surface_stress
 
 NU = 0.3
 Field = Callable[[np.ndarray, np.ndarray, np.ndarray], ref.Stress]
@@ -77,14 +77,14 @@ def test_surface_stress_of_circle() -> None:
     assert stress["sigma_zz"] == pytest.approx(-pressure, abs=1e-9)
     assert stress["tau_yz"] == pytest.approx(-0.25 * pressure, abs=1e-9)
     assert stress["tau_xz"] == pytest.approx(0, abs=1e-9)
-    radial, hoop = hertz_circle_surface(r, 1.0, 1.0, NU)
+    radial, hoop = compute_hertz_surface_stress(r, 1.0, 1.0, NU)
     frictionless = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU)
     assert frictionless["sigma_xx"] == pytest.approx(radial, abs=1e-9)
     assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
     x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
     shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
     circle_stress = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
-    for name, value in sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
+    for name, value in compute_sliding_surface_stress(x, y, 1.0, 1.0, NU).items():
         assert shear[name] - circle_stress[name] == pytest.approx(value, abs=1e-9), name
 
 
@@ -165,17 +165,17 @@ def test_largest_von_mises_stress_of_strip(
     assert mises[:, 0].max() == pytest.approx(surface_maximum, abs=1e-3)
     if maximum is not None:
         subsurface = mises[:, 40:]
-        i, step_count = np.unravel_index(subsurface.argmax(), subsurface.shape)
+        i, j = np.unravel_index(subsurface.argmax(), subsurface.shape)
         assert subsurface.max() == pytest.approx(maximum, abs=1e-4)
-        assert (abs(y[i, 0]), z[0, 40 + step_count]) == pytest.approx((y_position, depth), abs=0.012)
+        assert (abs(y[i, 0]), z[0, 40 + j]) == pytest.approx((y_position, depth), abs=0.012)
 
 
 def test_largest_orthogonal_shear_of_strip() -> None:
     y, z = np.linspace(-1.5, 1.5, 601)[:, None], np.linspace(0.2, 0.9, 141)[None, :]
     shear = ref.hertz_strip(y, z, 1.0, 1.0, NU)["tau_yz"]
-    i, step_count = np.unravel_index(np.abs(shear).argmax(), shear.shape)
+    i, j = np.unravel_index(np.abs(shear).argmax(), shear.shape)
     assert np.abs(shear).max() == pytest.approx(0.25, abs=1e-4)
-    assert (abs(y[i, 0]), z[0, step_count]) == pytest.approx((0.866, 0.5), abs=0.01)
+    assert (abs(y[i, 0]), z[0, j]) == pytest.approx((0.866, 0.5), abs=0.01)
 
 
 def test_strip_equals_integral_of_point_loads() -> None:

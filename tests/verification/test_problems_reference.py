@@ -38,22 +38,25 @@ def test_nan_fails_check(value: float) -> None:
 
 
 def test_convergence_requires_small_error_and_order() -> None:
-    def failing_quantities(errors: tuple[float, ...]) -> list[str]:
+    def list_failed_quantities(errors: tuple[float, ...]) -> list[str]:
         table = Table(
             title="case",
             setting="cells",
             source="exact",
             values=(8, 16, 32),
             errors={"error": errors},
-            used=32,
+            value_in_use=32,
             tolerance=0.01,
             order=1.5,
         )
         return [check.quantity for check in table.checks() if not check.passed]
 
-    assert failing_quantities((0.16, 0.04, 0.01)) == []
-    assert failing_quantities((0.016, 0.014, 0.012)) == ["error, error", "order in the cells, at least 1.5, shortfall"]
-    assert len(failing_quantities((0.001, 0.001, 0.001))) == 1
+    assert list_failed_quantities((0.16, 0.04, 0.01)) == []
+    assert list_failed_quantities((0.016, 0.014, 0.012)) == [
+        "error, error",
+        "order in the cells, at least 1.5, shortfall",
+    ]
+    assert len(list_failed_quantities((0.001, 0.001, 0.001))) == 1
 
 
 def test_check_fails_for_each_quadrature_setting() -> None:

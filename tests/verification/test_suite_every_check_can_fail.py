@@ -154,29 +154,31 @@ def partition_heat_by_constant(patch: Patch) -> None:
 
 
 def omit_wear_depth(patch: Patch) -> None:
-    real = WearIntegrator.solve_contact
-    patch.setattr(WearIntegrator, "solve_contact", lambda wear, depth, *further: real(wear, 0 * depth, *further))
+    original = WearIntegrator.solve_contact
+    patch.setattr(WearIntegrator, "solve_contact", lambda wear, depth, *further: original(wear, 0 * depth, *further))
 
 
 def reduce_wear_slip(patch: Patch) -> None:
-    real = WearIntegrator.compute_slip
-    patch.setattr(WearIntegrator, "compute_slip", lambda wear, depth: 0.9 * real(wear, depth))
+    original = WearIntegrator.compute_slip
+    patch.setattr(WearIntegrator, "compute_slip", lambda wear, depth: 0.9 * original(wear, depth))
 
 
 def scale_pressure(factor: float) -> Callable[[Patch], None]:
     """Change of the pressure of passing line contacts, with an unchanged nominal pressure."""
 
     def patch_pressure(patch: Patch) -> None:
-        real = passes.from_top
-        patch.setattr(passes, "from_top", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+        original = passes.from_top
+        patch.setattr(passes, "from_top", lambda friction: (factor * original(friction)).assign(hertz_max_pressure=1.0))
 
     return patch_pressure
 
 
 def increase_yield_stress(patch: Patch) -> None:
-    real = passes.ElasticPlastic
+    original = passes.ElasticPlastic
     patch.setattr(
-        passes, "ElasticPlastic", lambda yield_stress, **hardening: real(yield_stress=1.05 * yield_stress, **hardening)
+        passes,
+        "ElasticPlastic",
+        lambda yield_stress, **hardening: original(yield_stress=1.05 * yield_stress, **hardening),
     )
 
 
@@ -185,40 +187,40 @@ def replace_body_by_half_space(patch: Patch) -> None:
 
 
 def increase_eigenstrain(patch: Patch) -> None:
-    real = EigenstrainBody.solve
-    patch.setattr(EigenstrainBody, "solve", lambda body, strain: real(body, 1.01 * strain))
+    original = EigenstrainBody.solve
+    patch.setattr(EigenstrainBody, "solve", lambda body, strain: original(body, 1.01 * strain))
 
 
 def increase_speed(patch: Patch) -> None:
-    real = line_contact.Fluid.of
-    patch.setattr(line_contact.Fluid, "of", lambda oil, scale, speed: real(oil, scale, 1.2 * speed))
+    original = line_contact.Fluid.of
+    patch.setattr(line_contact.Fluid, "of", lambda oil, scale, speed: original(oil, scale, 1.2 * speed))
 
 
 def increase_moment(patch: Patch) -> None:
-    real = line_contact.solve_line
+    original = line_contact.solve_line
 
     def shifted_line_film(*arguments: float, **keywords: object) -> line_contact.LineFilm:
-        line = real(*arguments, **keywords)
+        line = original(*arguments, **keywords)
         return line._replace(moment=1.05 * line.moment)
 
     patch.setattr(line_contact, "solve_line", shifted_line_film)
 
 
 def change_load_exponent(patch: Patch) -> None:
-    real = line_contact.solve_line
+    original = line_contact.solve_line
     patch.setattr(
-        line_contact, "solve_line", lambda load, *arguments, **keywords: real(load**0.8, *arguments, **keywords)
+        line_contact, "solve_line", lambda load, *arguments, **keywords: original(load**0.8, *arguments, **keywords)
     )
 
 
 def loosen_tolerance(patch: Patch) -> None:
-    real, loose_settings = film.solve_film, FilmSettings(tolerance=1e-3)
-    patch.setattr(film, "solve_film", lambda case, **keywords: real(case, settings=loose_settings, **keywords))
+    original, loose_settings = film.solve_film, FilmSettings(tolerance=1e-3)
+    patch.setattr(film, "solve_film", lambda case, **keywords: original(case, settings=loose_settings, **keywords))
 
 
 def reduce_film_resultants(patch: Patch) -> None:
-    real = FilmProblem.resultants.func
-    patch.setattr(FilmProblem, "resultants", property(lambda problem: real(problem) / 1.01))
+    original = FilmProblem.resultants.func
+    patch.setattr(FilmProblem, "resultants", property(lambda problem: original(problem) / 1.01))
 
 
 def find_failed_checks(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
@@ -236,15 +238,15 @@ def coarsen_quadratures(patch: Patch) -> None:
 
 
 def fix_stress_grid(patch: Patch) -> None:
-    real = free_ends.pressure_of
-    patch.setattr(convergence, "pressure_of", lambda case, count: real(case, 8))
+    original = free_ends.pressure_of
+    patch.setattr(convergence, "pressure_of", lambda case, count: original(case, 8))
 
 
 def add_grid_noise(patch: Patch) -> None:
-    real = contact.solve_contact
+    original = contact.solve_contact
 
     def solve_wrong_contact(body, gap, load, **keywords):
-        result = real(body, gap, load=load, **keywords)
+        result = original(body, gap, load=load, **keywords)
         factor = 1 + 0.05 * np.sin(gap.size)
         return result.assign(pressure=factor * result["pressure"], approach=factor * result["approach"])
 

@@ -91,16 +91,18 @@ def test_pressure_of_worn_profile_on_halved_columns(refined_wear) -> None:
 
 @pytest.mark.slow
 def test_shakedown_limit_near_end_is_independent_of_columns(refined_wear, coarse_wear) -> None:
-    a = make_case().hertz_half_width
-    x = MARGIN + a * np.array([0.0, 0.02, 0.05, 0.1, 0.2])
-    positions = {"x": x, "y": a * np.linspace(-2, 2, 25), "z": a * np.array([0.03, 0.1, 0.3, 0.6])}
-    limits = [
+    half_width = make_case().hertz_half_width
+    x = MARGIN + half_width * np.array([0.0, 0.02, 0.05, 0.1, 0.2])
+    positions = {"x": x, "y": half_width * np.linspace(-2, 2, 25), "z": half_width * np.array([0.03, 0.1, 0.3, 0.6])}
+    shakedown_limits = [
         float(
-            fatigue.shakedown(solve(make_case(worn_profile(make_case(), worn)), **positions))["shakedown_stress"].max()
+            fatigue.shakedown(solve(make_case(worn_profile(make_case(), wear_result)), **positions))[
+                "shakedown_stress"
+            ].max()
         )
-        for worn in (coarse_wear, refined_wear)
+        for wear_result in (coarse_wear, refined_wear)
     ]
-    assert limits[0] == pytest.approx(limits[1], rel=0.05)
+    assert shakedown_limits[0] == pytest.approx(shakedown_limits[1], rel=0.05)
 
 
 @pytest.fixture(scope="module")
@@ -119,10 +121,10 @@ def test_slope_is_uniform_at_a_flush_end() -> None:
     case = make_case(margin=0.0)
     half_window = 2.6 * case.hertz_half_width
     edges = np.linspace(0, LENGTH, 41)
-    worn = wear_in(case, K, distance=[0.0, 2e5], grid=Grid.from_edges(edges, (-half_window, half_window), 32))
-    profile = worn_profile(case, worn)
-    s = 1e-6 * np.array([0.0, 1.0, 2.0, 4.0])
-    slopes = np.diff(profile.drop(s - 0.5 * LENGTH, LENGTH)) / np.diff(s)
+    wear_result = wear_in(case, K, distance=[0.0, 2e5], grid=Grid.from_edges(edges, (-half_window, half_window), 32))
+    profile = worn_profile(case, wear_result)
+    end_distances = 1e-6 * np.array([0.0, 1.0, 2.0, 4.0])
+    slopes = np.diff(profile.drop(end_distances - 0.5 * LENGTH, LENGTH)) / np.diff(end_distances)
     assert np.ptp(slopes) < 0.3 * np.abs(slopes).max()
 
 
@@ -130,11 +132,11 @@ def test_worn_overhanging_roller_has_no_ridge() -> None:
     body = FiniteLengthSpace(length=0.3e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=LENGTH), max_pressure=1.5e9, end_distance=-0.05e-3)
     half_window = 2.6 * case.hertz_half_width
-    worn = wear_in(
+    wear_result = wear_in(
         case, K, distance=[0.0, 2e4], grid=Grid.from_edges(np.linspace(0, 0.3e-3, 31), (-half_window, half_window), 32)
     )
-    profile = worn_profile(case, worn)
-    depth = worn["wear_depth"].values[-1]
+    profile = worn_profile(case, wear_result)
+    depth = wear_result["wear_depth"].values[-1]
     end_drops = profile.drop(np.array([-0.15e-3, 0.15e-3]), LENGTH)
     assert end_drops == pytest.approx(depth[[0, -1]], rel=0.05)
 
@@ -151,9 +153,9 @@ def test_worn_profile_at_border_of_worn_columns(border: float) -> None:
 
     depth = xr.DataArray([compute_parabola(x - 0.5 * LENGTH)], dims=("distance", "x"))
     pressure = xr.zeros_like(depth).expand_dims(y=[0.0], axis=-1)
-    worn = xr.Dataset({"wear_depth": depth, "pressure": pressure}, {"distance": [1e3], "x": x})
+    wear_result = xr.Dataset({"wear_depth": depth, "pressure": pressure}, {"distance": [1e3], "x": x})
     x = np.linspace(border - 0.1e-3, border, 201)
-    drop = worn_profile(case, worn).drop(x, LENGTH)
+    drop = worn_profile(case, wear_result).drop(x, LENGTH)
     assert drop == pytest.approx(x**2 / (2 * radius) + compute_parabola(x), abs=1.2e-9)
 
 
@@ -161,9 +163,9 @@ def test_worn_profile_at_border_of_worn_columns(border: float) -> None:
 def test_partly_worn_edge_radius_has_no_ridge() -> None:
     """Interpolation of depths on wide columns would cause a ridge with a pressure above that of the unworn radius."""
     case = make_case(Cylinder(fillet_radius=0.1e-3))
-    worn = wear_in(case, K, distance=[0.0, 1e4])
-    worn_result = solve(make_case(worn_profile(case, worn)), stresses=False)
-    unworn_peak, worn_peak = (float(worn["pressure"].isel(distance=index).max()) for index in (0, -1))
+    wear_result = wear_in(case, K, distance=[0.0, 1e4])
+    worn_result = solve(make_case(worn_profile(case, wear_result)), stresses=False)
+    unworn_peak, worn_peak = (float(wear_result["pressure"].isel(distance=index).max()) for index in (0, -1))
     assert worn_peak < float(worn_result.peak_pressure) < 0.8 * unworn_peak
 
 

@@ -46,8 +46,8 @@ def worn_result(sharp_roller):
 
 
 def compute_ratio(line_load):
-    loaded = line_load[line_load > 0]
-    return loaded.max() / loaded.min()
+    is_loaded = line_load[line_load > 0]
+    return is_loaded.max() / is_loaded.min()
 
 
 def test_volume_obeys_archard_to_rounding(sharp_roller, worn_result):
@@ -123,12 +123,12 @@ def test_wear_under_eccentric_load_has_linear_line_load(sharp_roller):
     eccentric_case = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
     result = wear_in(eccentric_case, K, distance=[1e5], grid=grid)
     load, x = result.line_load.values[-1], grid.x
-    loaded = load > 0
-    length = grid.dx * loaded.sum()
+    is_loaded = load > 0
+    length = grid.dx * is_loaded.sum()
     # w = W / L (1 + 12 e x' / L**2)
-    load_factor = 12 * (0.32e-3 - 0.3e-3) * (x[loaded] - 0.3e-3) / (length**2 - grid.dx**2)
+    load_factor = 12 * (0.32e-3 - 0.3e-3) * (x[is_loaded] - 0.3e-3) / (length**2 - grid.dx**2)
     expected = eccentric_case.normal_load / length * (1 + load_factor)
-    assert load[loaded] == pytest.approx(expected, rel=2e-3)
+    assert load[is_loaded] == pytest.approx(expected, rel=2e-3)
     assert float(result.volume_error) < 1e-9
 
 
@@ -180,8 +180,8 @@ def test_rolling_wear_becomes_uniform(rolling_contact):
     case, grid = rolling_contact
     result = wear_in(case, 1e-14, distance=[10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
     assert float(result.volume_error) < 0.02
-    loaded = result.line_load.values[0] > 0
-    depth = result.wear_depth.values[:, loaded]
+    is_loaded = result.line_load.values[0] > 0
+    depth = result.wear_depth.values[:, is_loaded]
     # The slip is larger at low line loads, so that the middle wears least initially.
     assert compute_ratio(depth[1]) > 1.1
     assert compute_ratio(depth[3] - depth[2]) < 1.01
@@ -225,9 +225,9 @@ def test_gap_of_worn_profile_contains_mean_depths():
         max_pressure=1.5e9,
     )
     expected_gap = (case.gap(grid) + result.wear_depth.values[-1][:, None])[:, 0]
-    loaded = np.isfinite(expected_gap)
-    assert worn_case.gap(grid)[loaded, 0] == pytest.approx(
-        expected_gap[loaded], abs=1e-5 * result.wear_depth.values.max()
+    is_loaded = np.isfinite(expected_gap)
+    assert worn_case.gap(grid)[is_loaded, 0] == pytest.approx(
+        expected_gap[is_loaded], abs=1e-5 * result.wear_depth.values.max()
     )
 
 
@@ -310,8 +310,8 @@ def test_worn_profile_is_finite_at_both_ends():
         distance=[0.0, 1e3],
         grid=Grid(x_range=(0.0, 0.6e-3), y_range=(-0.13e-3, 0.13e-3), cells_x=75, cells_y=16),
     )
-    loaded = (worn_result.pressure > 0).any(("distance", "y"))
-    assert np.isfinite(worn_result.profile_drop.isel(distance=-1)).where(loaded, True).all()
+    is_loaded = (worn_result.pressure > 0).any(("distance", "y"))
+    assert np.isfinite(worn_result.profile_drop.isel(distance=-1)).where(is_loaded, True).all()
     np.testing.assert_array_equal(np.isfinite(worn_result.profile_drop), np.isfinite(worn_result.profile_drop)[:, ::-1])
 
 

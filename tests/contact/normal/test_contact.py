@@ -16,7 +16,7 @@ from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
 """Units of length and pressure: powers of two have no rounding errors."""
 
-COARSE, FINE = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
+COARSE_EDGES, FINE_EDGES = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
 GRADED_EDGES = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
 FREE_END_EDGES = np.linspace(0.0, 3.0, 21)
 
@@ -24,7 +24,7 @@ FREE_END_EDGES = np.linspace(0.0, 3.0, 21)
 class ContactSpec(NamedTuple):
     """A ball off the origin, or a roller across a body with two ends; lengths and pressures are about 1."""
 
-    edges: Any = COARSE
+    edges: Any = COARSE_EDGES
     load: float | None = 0.05
     position: float | None = None
     approach: float | None = None
@@ -33,7 +33,7 @@ class ContactSpec(NamedTuple):
     coupled: float = 0.0
     cells_y: int = 20
 
-    def shape(self, length: float = 1.0, pressure: float = 1.0) -> Shape:
+    def make_shape(self, length: float = 1.0, pressure: float = 1.0) -> Shape:
         """Return the contact with lengths and pressures in given units."""
         grid = Grid.between(length * self.edges, (-1.5 * length, 1.5 * length), self.cells_y)
         x, y = grid.x[:, None] / length, grid.y / length
@@ -54,8 +54,8 @@ CONTACT_SPECS = {
     "load": ContactSpec(),
     "graded": ContactSpec(GRADED_EDGES, has_counterbody=True),
     "approach": ContactSpec(load=None, approach=0.04),
-    "nested": ContactSpec(FINE, has_counterbody=True, cells_y=64),
-    "nested approach": ContactSpec(FINE, load=None, approach=0.04, cells_y=64),
+    "nested": ContactSpec(FINE_EDGES, has_counterbody=True, cells_y=64),
+    "nested approach": ContactSpec(FINE_EDGES, load=None, approach=0.04, cells_y=64),
     "coupled": ContactSpec(coupled=0.4),
     "coupled approach": ContactSpec(GRADED_EDGES, load=None, approach=0.04, coupled=0.4),
     "ends": ContactSpec(FREE_END_EDGES, has_free_ends=True),
@@ -82,29 +82,29 @@ def test_results_scale_with_units(spec: ContactSpec) -> None:
 
 @pytest.mark.parametrize("has_free_ends", [False, True])
 def test_symmetric_contacts_have_symmetric_pressures(has_free_ends: bool) -> None:
-    edges = FREE_END_EDGES if has_free_ends else COARSE
+    edges = FREE_END_EDGES if has_free_ends else COARSE_EDGES
     grid = Grid.between(edges, (-1.5, 1.5), 20)
     mid_x = 0.5 * (edges[0] + edges[-1])
     gap = 0.05 * ((grid.x[:, None] - mid_x) ** 2 + grid.y**2)
     material = Material(0.91, 0.3)
     body: Body = FiniteLengthSpace(material=material, length=3.0) if has_free_ends else HalfSpace(material=material)
-    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
-    pressure = contact_of(shape, Settings()).pressure
+    make_shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
+    pressure = contact_of(make_shape, Settings()).pressure
     assert (pressure == pressure[::-1]).all()
     assert (pressure == pressure[:, ::-1]).all()
-    assert shape.reflections() == [0, 1]
+    assert make_shape.reflections() == [0, 1]
     unsymmetric_shapes = (
-        (shape._replace(coupled_friction=0.3), [0]),
-        (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
-        (shape._replace(prescribed=PrescribedLoad(0.05, mid_x + 1e-6)), [1]),
-        (shape._replace(body=QuarterSpace(material=material)), [1]),
-        (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
+        (make_shape._replace(coupled_friction=0.3), [0]),
+        (make_shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
+        (make_shape._replace(prescribed=PrescribedLoad(0.05, mid_x + 1e-6)), [1]),
+        (make_shape._replace(body=QuarterSpace(material=material)), [1]),
+        (make_shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
     )
     for variant, axes in unsymmetric_shapes:
         assert variant.reflections() == axes
 
 
-def rigid_approach(contact: Contact) -> Any:
+def compute_rigid_approach(contact: Contact) -> Any:
     """Approach of the surfaces by the rigid motion, from the approach and tilt of a contact."""
     load_position = contact.shape.prescribed.load_position
     tilt_height = 0.0 if load_position is None else contact.tilt * (contact.shape.grid.x[:, None] - load_position)
@@ -115,7 +115,7 @@ def rigid_approach(contact: Contact) -> Any:
 def test_gap_follows_from_displacement_and_shape(name: str) -> None:
     computed = contact_of(CONTACT_SPECS[name].shape(), Settings())
     is_under_shape = np.isfinite(computed.gap)
-    expected = computed.shape.gap.values + computed.displacement - rigid_approach(computed)
+    expected = computed.shape.gap.values + computed.displacement - compute_rigid_approach(computed)
     assert computed.gap[is_under_shape] == pytest.approx(expected[is_under_shape], abs=1e-9)
     assert (np.abs(computed.tilt) > 1e-4) == (name == "position")
     if name == "position":

@@ -23,14 +23,14 @@ from contactstudy import (
 from contactstudy.contact import ContactSettings
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.roughness import self_affine
-from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, case_with
-from tests.reference_line import line_slope
+from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, make_crowned_case
+from tests.reference_line import compute_line_slope
 
 
 @pytest.mark.parametrize("offset", [-2.5, 0.0])
 def test_resultant_acts_at_prescribed_position(offset: float):
     position = 0.5 * LENGTH + offset * HALF_WIDTH
-    result = solve(case_with(load_position=position), stresses=False, accuracy=0.05)
+    result = solve(make_crowned_case(load_position=position), stresses=False, accuracy=0.05)
     assert bool(result.converged)
     line_load = result.pressure.sum("y") * result.x_width
     assert abs(float((line_load * line_load.x).sum() / line_load.sum()) - position) < 1e-6 * LENGTH
@@ -43,10 +43,10 @@ def test_resultant_acts_at_prescribed_position(offset: float):
 
 
 def test_resulting_tilt_reproduces_position():
-    case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
+    case = make_crowned_case(load_position=0.5 * LENGTH + HALF_WIDTH)
     grid = choose_grid(case, cells_x=8, cells_y=8)
     free_result = solve(case, grid, stresses=False)
-    tilted_result = solve(case_with(tilt=float(free_result.tilt)), grid, stresses=False)
+    tilted_result = solve(make_crowned_case(tilt=float(free_result.tilt)), grid, stresses=False)
     np.testing.assert_allclose(
         tilted_result.pressure, free_result.pressure, atol=5e-5 * float(free_result.pressure.max())
     )
@@ -54,7 +54,7 @@ def test_resulting_tilt_reproduces_position():
 
 
 def test_opposite_tilts_mirror_the_pressure():
-    results = [solve(case_with(tilt=tilt), stresses=False, accuracy=0.05) for tilt in (2e-4, -2e-4)]
+    results = [solve(make_crowned_case(tilt=tilt), stresses=False, accuracy=0.05) for tilt in (2e-4, -2e-4)]
     tilted_pressure, mirrored_pressure = (result.pressure.values for result in results)
     np.testing.assert_allclose(tilted_pressure, mirrored_pressure[::-1], atol=1e-5 * tilted_pressure.max())
     assert float(results[0].load_position) > 0.5 * LENGTH + 0.1 * HALF_WIDTH
@@ -62,7 +62,7 @@ def test_opposite_tilts_mirror_the_pressure():
 
 def test_load_at_mid_length_has_no_tilt():
     free_result, held_result = (
-        solve(case_with(load_position=load_position), stresses=False) for load_position in (0.5 * LENGTH, None)
+        solve(make_crowned_case(load_position=load_position), stresses=False) for load_position in (0.5 * LENGTH, None)
     )
     assert abs(float(free_result.tilt)) < 1e-9
     np.testing.assert_allclose(
@@ -72,7 +72,7 @@ def test_load_at_mid_length_has_no_tilt():
 
 @pytest.mark.parametrize("body", [BODY, HalfSpace(material=STEEL)], ids=["finite", "half-space"])
 def test_prescribed_approach_equals_prescribed_load(body):
-    case = case_with(body=body, end_distance=2 * HALF_WIDTH)
+    case = make_crowned_case(body=body, end_distance=2 * HALF_WIDTH)
     grid = choose_grid(case)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     by_load = solve_contact(body, gap, load=case.normal_load)
@@ -123,7 +123,7 @@ def test_wavy_surface_matches_westergaard(closure: float):
 
 
 def test_self_affine_surfaces_converge():
-    case = case_with()
+    case = make_crowned_case()
     grid = choose_grid(case, window=4.0, cells_y=8)
     roughness = self_affine(
         grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=1
@@ -139,26 +139,26 @@ def test_self_affine_surfaces_converge():
 
 
 def test_roughness_on_other_cells_is_interpolated():
-    case = case_with()
+    case = make_crowned_case()
     grid = choose_grid(case)
     wider_grid = Grid(
         x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
     )
 
-    def sloping_heights(cells: Grid) -> xr.DataArray:  # the plane is bilinear, so that interpolation is exact
+    def compute_sloping_heights(cells: Grid) -> xr.DataArray:  # the plane is bilinear, so that interpolation is exact
         heights = 1e-3 * (cells.x[:, None] - 0.5 * LENGTH) + 2e-3 * cells.y
         return xr.DataArray(heights, coords={"x": cells.x, "y": cells.y}, dims=("x", "y"))
 
     expected, interpolated = (
-        solve(case, grid, roughness=sloping_heights(cells), stresses=False) for cells in (grid, wider_grid)
+        solve(case, grid, roughness=compute_sloping_heights(cells), stresses=False) for cells in (grid, wider_grid)
     )
     np.testing.assert_allclose(interpolated.initial_gap, expected.initial_gap, atol=1e-18)
-    tilted_result = solve(case_with(tilt=1e-3), grid, stresses=False)
+    tilted_result = solve(make_crowned_case(tilt=1e-3), grid, stresses=False)
     assert float(expected.load_position) == pytest.approx(float(tilted_result.load_position), abs=1e-2 * HALF_WIDTH)
 
 
 def test_flat_height_map_changes_approach_only():
-    case = case_with()
+    case = make_crowned_case()
     grid = choose_grid(case)
     flat_heights = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     smooth_result, rough_result = (
@@ -182,7 +182,7 @@ def test_flat_height_map_changes_approach_only():
 )
 def test_invalid_cases_raise_error(arguments, parameter: str):
     with pytest.raises(InvalidInputError, match=parameter):
-        case_with(**arguments)
+        make_crowned_case(**arguments)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_invalid_cases_raise_error(arguments, parameter: str):
     ],
 )
 def test_invalid_prescriptions_raise_error(arguments, parameter: str):
-    case = case_with()
+    case = make_crowned_case()
     grid = choose_grid(case, cells_x=2, cells_y=4)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     settings = ContactSettings(load_position=arguments.pop("load_position", None))
@@ -206,7 +206,7 @@ def test_invalid_prescriptions_raise_error(arguments, parameter: str):
 
 
 def test_roughness_must_cover_the_cells():
-    case = case_with()
+    case = make_crowned_case()
     grid = choose_grid(case, cells_x=2, cells_y=4)
     roughness = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match="roughness"):
@@ -214,12 +214,12 @@ def test_roughness_must_cover_the_cells():
 
 
 def test_approach_and_tilt_state_reference():
-    result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
+    result = solve(make_crowned_case(load_position=11 * HALF_WIDTH), stresses=False)
     assert float(result.reference_depth) == LENGTH
     assert "roller_reference_depth" not in result
     assert all("reference_depth" in result[name].attrs["long_name"] for name in ("approach", "tilt"))
     assert result.tilt.attrs["centre"] == "load_position"
-    assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
+    assert solve(make_crowned_case(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
 
 
 def test_load_near_end_acts_at_prescribed_position():
@@ -236,7 +236,7 @@ def test_load_near_end_acts_at_prescribed_position():
         Case(roller=steep_roller, **arguments)
 
 
-def balanced_tilt(scale: float) -> float:
+def compute_balanced_tilt(scale: float) -> float:
     """Tilt relative to the body far away that balances a load off the middle, all lengths times `scale`."""
     length, cells = 0.2e-3 * scale, 16
     x = (np.arange(cells) + 0.5) * length / cells
@@ -247,14 +247,14 @@ def balanced_tilt(scale: float) -> float:
     body = FiniteLengthSpace(length=length, material=STEEL)
     result = solve_contact(body, gap, load=5.0 * scale**2, settings=ContactSettings(load_position=0.6 * length))
     assert bool(result.converged)
-    return float(result.tilt) + line_slope(body, result.pressure, length)
+    return float(result.tilt) + compute_line_slope(body, result.pressure, length)
 
 
 def test_balanced_load_scales_with_unit_of_length() -> None:
-    tilt = balanced_tilt(1.0)
+    tilt = compute_balanced_tilt(1.0)
     # Quadratures of the ends four times finer give 1.341671e-3.
     assert tilt == pytest.approx(1.341671e-3, rel=2e-5)
-    assert balanced_tilt(1e-6) == pytest.approx(tilt, rel=1e-9)
+    assert compute_balanced_tilt(1e-6) == pytest.approx(tilt, rel=1e-9)
 
 
 def test_tolerance_below_rounding_does_not_converge(on_cells, half_space: HalfSpace):

@@ -35,7 +35,7 @@ BALANCED_LOAD = Resultants(50.0, LEVER)
 generators = st.integers(0, 10**6).map(np.random.default_rng)
 
 
-def rough_gap(rng: np.random.Generator, has_sharp_end: bool) -> np.ndarray:
+def make_rough_gap(rng: np.random.Generator, has_sharp_end: bool) -> np.ndarray:
     """Return a crowned gap with waves of the size of a cell, or a gap with a sharp end of the shape."""
     gap = (GRID.x[:, None] - 1.5) ** 2 / 4 + GRID.y**2 / 2
     if has_sharp_end:
@@ -43,20 +43,20 @@ def rough_gap(rng: np.random.Generator, has_sharp_end: bool) -> np.ndarray:
     return gap + 0.05 * rng.standard_normal(GRID.shape)
 
 
-def random_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
+def make_random_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
     """Return pressures without relation to the contact; many of them are zero."""
     return np.where(np.isfinite(gap) & (rng.random(GRID.shape) < 0.3), rng.random(GRID.shape) ** 4, 0.0)
 
 
 @given(rng=generators, has_sharp_end=st.booleans())
 def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Generator, has_sharp_end: bool):
-    gap = rough_gap(rng, has_sharp_end) - 0.5
+    gap = make_rough_gap(rng, has_sharp_end) - 0.5
     computed = solve_complementarity(
         compute_displacement,
         BODY_OPERATOR.precondition,
         gap,
         Resultants(None),
-        random_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0),
+        make_random_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0),
         tolerance=1e-8,
         max_iterations=500,
     )
@@ -71,13 +71,13 @@ def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Ge
 def test_prescribed_load_satisfies_contact_conditions(
     rng: np.random.Generator, has_sharp_end: bool, resultants: Resultants
 ):
-    gap = rough_gap(rng, has_sharp_end)
+    gap = make_rough_gap(rng, has_sharp_end)
     computed = solve_complementarity(
         compute_displacement,
         BODY_OPERATOR.precondition,
         gap,
         resultants,
-        random_guess(rng, gap),
+        make_random_guess(rng, gap),
         tolerance=1e-8,
         max_iterations=500,
     )
@@ -160,7 +160,7 @@ def make_state(gap: np.ndarray, resultants: Resultants, start: np.ndarray) -> _I
 
 @given(rng=generators)
 def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
-    gap = rough_gap(rng, True)
+    gap = make_rough_gap(rng, True)
     start = np.where(LEVER < -0.3, rng.random(GRID.shape), 0.0)
     computed = make_state(gap, BALANCED_LOAD, start).pressure
     assert ((computed > 0) == np.isfinite(gap)).all()
@@ -173,7 +173,7 @@ def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
 @given(rng=generators, has_sharp_end=st.booleans(), has_far_guess=st.booleans())
 def test_guess_is_scaled_to_approach(rng: np.random.Generator, has_sharp_end: bool, has_far_guess: bool):
     """The scaled guess has the least energy of all its multiples; a guess outside the overlap is replaced."""
-    gap = rough_gap(rng, has_sharp_end) - 0.5
+    gap = make_rough_gap(rng, has_sharp_end) - 0.5
     start = np.where((gap > 0.5) & np.isfinite(gap) if has_far_guess else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
     iteration = make_state(gap, Resultants(None), start)
     height = np.where(np.isfinite(gap), gap, 0.0) + compute_displacement(iteration.pressure)
@@ -188,7 +188,7 @@ def test_guess_is_scaled_to_approach(rng: np.random.Generator, has_sharp_end: bo
         )
 
 
-def potential_energy(gap: np.ndarray, pressure: np.ndarray) -> float:
+def compute_potential_energy(gap: np.ndarray, pressure: np.ndarray) -> float:
     return float((pressure * (np.where(np.isfinite(gap), gap, 0.0) + 0.5 * compute_displacement(pressure))).sum())
 
 
@@ -201,9 +201,9 @@ def potential_energy(gap: np.ndarray, pressure: np.ndarray) -> float:
 def test_area_change_reduces_energy_and_keeps_resultants(
     rng: np.random.Generator, has_sharp_end: bool, resultants: Resultants
 ):
-    gap = rough_gap(rng, has_sharp_end) - (0.5 if resultants.total is None else 0.0)
-    iteration = make_state(gap, resultants, random_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0))
-    previous_energy = potential_energy(gap, iteration.pressure)
+    gap = make_rough_gap(rng, has_sharp_end) - (0.5 if resultants.total is None else 0.0)
+    iteration = make_state(gap, resultants, make_random_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0))
+    previous_energy = compute_potential_energy(gap, iteration.pressure)
     for index in range(8):
         opening = iteration.compute_opening()
         step, response, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
@@ -218,9 +218,9 @@ def test_area_change_reduces_energy_and_keeps_resultants(
         if resultants.total is not None:
             check_conditions(resultants, iteration.pressure)
         if index % 2 or closed.any():
-            energy_after = potential_energy(gap, iteration.pressure)
+            energy_after = compute_potential_energy(gap, iteration.pressure)
             assert energy_after <= previous_energy + 1e-9 * abs(previous_energy)
-        previous_energy = potential_energy(gap, iteration.pressure)
+        previous_energy = compute_potential_energy(gap, iteration.pressure)
 
 
 @given(slope=st.floats(-2.0, 2.0), curvature=st.floats(0.01, 5.0))
@@ -229,29 +229,29 @@ def test_descent_fraction_minimises_energy(slope: float, curvature: float):
     change, opening = np.array([2.0, 0.0]), np.array([-0.5 * slope, np.inf])
     fraction = _descent_fraction(change, np.array([0.5 * curvature, 1.0]), opening)
 
-    def energy_at(trial_fraction: float) -> float:
+    def compute_energy(trial_fraction: float) -> float:
         return -slope * trial_fraction + 0.5 * curvature * trial_fraction**2
 
     if slope <= 0:
         assert fraction == 0.0
-    elif energy_at(1.0) < 0:
+    elif compute_energy(1.0) < 0:
         assert fraction == 1.0
     else:
         assert fraction == pytest.approx(min(slope / curvature, 1.0))
-        assert energy_at(fraction) <= min(energy_at(0.99 * fraction), energy_at(1.01 * fraction))
+        assert compute_energy(fraction) <= min(compute_energy(0.99 * fraction), compute_energy(1.01 * fraction))
 
 
 @settings(max_examples=10)
 @given(rng=generators)
 def test_iteration_ends_at_small_violation_and_change(rng: np.random.Generator):
-    gap = rough_gap(rng, False)
+    gap = make_rough_gap(rng, False)
     for unit in (1e-9, 1e9):
         computed = solve_complementarity(
             compute_displacement,
             BODY_OPERATOR.precondition,
             unit * gap,
             Resultants(50.0 * unit),
-            unit * random_guess(np.random.default_rng(1), gap),
+            unit * make_random_guess(np.random.default_rng(1), gap),
             tolerance=1e-6,
             max_iterations=500,
         )
@@ -283,7 +283,7 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
     baseline = make_state(gap, Resultants(None), start)
     assert iteration._balance_sides(unit * start) == pytest.approx(unit * baseline._balance_sides(start))
     balanced_state = make_state(
-        unit * rough_gap(np.random.default_rng(0), False), Resultants(50.0 * unit, LEVER), unit * start
+        unit * make_rough_gap(np.random.default_rng(0), False), Resultants(50.0 * unit, LEVER), unit * start
     )
     one_sided_pressure = np.where(LEVER < -0.3, 1.0, 0.0) * np.ones(GRID.shape)
     assert balanced_state._balance_sides(unit * one_sided_pressure) == pytest.approx(unit * (one_sided_pressure + 0.1))

@@ -16,7 +16,7 @@ GRID = Grid(x_range=(0.0, 1.6e-3), y_range=(-4e-4, 4e-4), cells_x=16, cells_y=12
 BODY = FiniteLengthSpace(material=STEEL, length=1.6e-3, model="mirror")
 
 
-def random_load(grid: Grid = GRID) -> dict[Load, np.ndarray]:
+def make_random_load(grid: Grid = GRID) -> dict[Load, np.ndarray]:
     return {Load.NORMAL: np.random.default_rng(0).random(grid.shape)}
 
 
@@ -39,14 +39,14 @@ def test_compliances_of_half_spaces_add_up() -> None:
     body_operator = surface_operator(half_space, GRID)
     unlike_operator = PairOperator.of(half_space, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
     factor = 1 + STEEL.plane_strain_modulus / SOFT.plane_strain_modulus
-    scaled_operator, load = PairOperator(body_operator, None, None, factor), random_load()
+    scaled_operator, load = PairOperator(body_operator, None, None, factor), make_random_load()
     assert unlike_operator(load) == pytest.approx(factor * body_operator(load))
     assert scaled_operator(load) == pytest.approx(unlike_operator(load))
-    gap = random_load()[Load.NORMAL]
+    gap = make_random_load()[Load.NORMAL]
     assert unlike_operator.precondition(gap) == pytest.approx(body_operator.precondition(gap) / factor)
     assert scaled_operator.precondition(gap) == pytest.approx(unlike_operator.precondition(gap))
-    coarse = {Load.NORMAL: load[Load.NORMAL][::2, ::2]}
-    assert scaled_operator.coarse(coarse) == pytest.approx(factor * body_operator.coarse(coarse))
+    coarse_load = {Load.NORMAL: load[Load.NORMAL][::2, ::2]}
+    assert scaled_operator.coarse(coarse_load) == pytest.approx(factor * body_operator.coarse(coarse_load))
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])

@@ -14,21 +14,21 @@ from contactstudy.contact.refinement.laws import RIGID, EndLaw, Sample, edge_pea
 WIDTHS = 0.1 * 0.5 ** np.arange(7)
 
 
-def column_means(edges: FloatArray, exponent: float, intensity: float, relative_slope: float) -> FloatArray:
+def compute_column_means(edges: FloatArray, exponent: float, intensity: float, relative_slope: float) -> FloatArray:
     """Means over columns of ``K d**-m (1 + c d)``."""
     first_power, second_power = 1 - exponent, 2 - exponent
     primitive = edges**first_power / first_power + relative_slope * edges**second_power / second_power
     return np.asarray(intensity * np.diff(primitive) / np.diff(edges))
 
 
-def graded_edges(width: float) -> FloatArray:
+def make_graded_edges(width: float) -> FloatArray:
     return width * np.concatenate([np.arange(9.0), 8 + 2 * np.arange(1, 9), 24 + 4 * np.arange(1, 17)])
 
 
 @given(intensity=st.floats(1e-3, 1e9), relative_slope=st.floats(-3.0, 3.0))
 def test_rigid_end_intensity_matches_power_law(intensity: float, relative_slope: float) -> None:
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, 0.5, intensity, relative_slope)[:, None] * np.array([0.4, 1.0, 0.4])
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, 0.5, intensity, relative_slope)[:, None] * np.array([0.4, 1.0, 0.4])
     law = EndLaw(exponent=0.5).with_intensity(edges, pressure, np.inf)
     assert law.intensity == pytest.approx(intensity, rel=1e-6)
     assert 0 < law.intensity_error < 5e-3 * intensity
@@ -36,8 +36,8 @@ def test_rigid_end_intensity_matches_power_law(intensity: float, relative_slope:
 
 def test_intensity_uses_row_of_end_peak() -> None:
     # Random case 4007234: friction loads both ends at different positions along y, the other end more.
-    edges = graded_edges(1e-3)
-    end_pressure = column_means(edges, 0.5, 2.0, 0.0)
+    edges = make_graded_edges(1e-3)
+    end_pressure = compute_column_means(edges, 0.5, 2.0, 0.0)
     far_row_pressure = np.where(edges[1:] > 0.03, 10 * end_pressure.max(), 0.0)
     law = EndLaw(exponent=0.5).with_intensity(
         edges, np.stack([0.5 * end_pressure, end_pressure, far_row_pressure], axis=1), np.inf
@@ -50,8 +50,8 @@ def test_intensity_uses_row_of_end_peak() -> None:
 @pytest.mark.parametrize("exponent", [0.5, np.nan])
 def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
     # Random case 4004708: friction reduces the contact to five columns.
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
     pressure[5:] = 0.0
     law = EndLaw(exponent=exponent).with_intensity(edges, pressure, np.inf)
     assert law.intensity_error == np.inf
@@ -62,20 +62,20 @@ def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
 
 @pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, exponent, 2.0, -0.5)[:, None]
     law = EndLaw(exponent=np.nan).with_intensity(edges, pressure, np.inf)
     assert law.exponent == pytest.approx(exponent, abs=1e-3)
     assert law.intensity == pytest.approx(2.0, rel=1e-2)
 
 
-def wedge_slope(angle: float, s: float) -> float:
+def compute_wedge_slope(angle: float, s: float) -> float:
     """Slope of the loaded face of a wedge over its pressure ``r**(s - 1)``, up to a constant of the material.
 
     Airy's function is ``r**(s + 1) F(t)``; its constants cancel in the ratio of two slopes.
     """
 
-    def fundamental_solutions(t: float) -> FloatArray:
+    def compute_fundamental_solutions(t: float) -> FloatArray:
         """F, F' and F'' of the four fundamental solutions."""
         upper_exponent, lower_exponent = s + 1, s - 1
         wedge_equations = [
@@ -102,7 +102,7 @@ def wedge_slope(angle: float, s: float) -> float:
         ]
         return np.array(wedge_equations).T
 
-    loaded_face, free_face = fundamental_solutions(0.0), fundamental_solutions(angle)
+    loaded_face, free_face = compute_fundamental_solutions(0.0), compute_fundamental_solutions(angle)
     # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
     conditions = np.array([s * (s + 1) * loaded_face[0], loaded_face[1], free_face[0], free_face[1]])
     _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
@@ -115,7 +115,7 @@ def wedge_slope(angle: float, s: float) -> float:
 def test_elastic_exponent_satisfies_wedge_equation(s: float) -> None:
     quarter_space_slope = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
     half_space_slope = 1 / np.tan(np.pi * s)
-    slope_ratio = wedge_slope(0.5 * np.pi, s) / wedge_slope(np.pi, s)
+    slope_ratio = compute_wedge_slope(0.5 * np.pi, s) / compute_wedge_slope(np.pi, s)
     assert slope_ratio == pytest.approx(quarter_space_slope / half_space_slope)
 
 
@@ -133,10 +133,10 @@ def make_samples(pressure: FloatArray) -> list[Sample]:
 
 @given(exponent=st.floats(0.15, 0.5))
 def test_power_growth_has_power_law(exponent: float) -> None:
-    theory_law, fitted_law = (law_of(make_samples(WIDTHS**-exponent), theory) for theory in (RIGID, np.nan))
+    theory_law, fit_end_law = (law_of(make_samples(WIDTHS**-exponent), theory) for theory in (RIGID, np.nan))
     assert theory_law == EndLaw(exponent=RIGID)
-    assert fitted_law is not None
-    assert np.isnan(fitted_law.exponent)
+    assert fit_end_law is not None
+    assert np.isnan(fit_end_law.exponent)
 
 
 @given(growth_rate=st.floats(0.02, 0.2))
@@ -146,7 +146,7 @@ def test_logarithmic_growth_has_logarithm_law(growth_rate: float) -> None:
     assert law is not None
     assert law.exponent == 0
     assert law_of(growing_samples, 0.2264) == EndLaw(exponent=0.2264)
-    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
+    assert np.isnan(law.with_intensity(make_graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
 @given(power=st.floats(0.6, 2.0), growth_rate=st.floats(0.0, 1.0))
@@ -193,42 +193,42 @@ EDGES = np.array(
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
 def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     """The fit uses columns from 3 to 64 widths, its error columns from 6 to 128; other columns have no influence."""
-    pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
+    pressure = compute_column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
-    def fitted_law(changed_distance: float) -> EndLaw:
-        variant = pressure.copy()
-        variant[int(np.flatnonzero(changed_distance == EDGES)[0])] *= 1.5
-        return EndLaw(exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
+    def fit_end_law(changed_distance: float) -> EndLaw:
+        changed_pressure = pressure.copy()
+        changed_pressure[int(np.flatnonzero(changed_distance == EDGES)[0])] *= 1.5
+        return EndLaw(exponent=0.5).with_intensity(unit * EDGES, changed_pressure, np.inf)
 
     baseline = EndLaw(exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
     assert baseline.intensity == pytest.approx(2.0)
     for changed_distance in (2.0, 128.0):
-        assert fitted_law(changed_distance) == baseline
+        assert fit_end_law(changed_distance) == baseline
     for changed_distance in (3.0, 38.0):
-        assert fitted_law(changed_distance).intensity != pytest.approx(2.0, rel=1e-3)
+        assert fit_end_law(changed_distance).intensity != pytest.approx(2.0, rel=1e-3)
     for changed_distance in (64.0, 90.0):
-        assert fitted_law(changed_distance).intensity == pytest.approx(2.0)
-        assert fitted_law(changed_distance).intensity_error > 2 * baseline.intensity_error
+        assert fit_end_law(changed_distance).intensity == pytest.approx(2.0)
+        assert fit_end_law(changed_distance).intensity_error > 2 * baseline.intensity_error
 
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
 def test_end_near_free_end_has_larger_error(width: float) -> None:
     """The law is invalid beyond half of the face between the ends; the fit uses columns up to 64 widths."""
     edges = width * EDGES
-    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
+    pressure = compute_column_means(edges, 0.5, 2.0, 0.0)[:, None]
     wide_face_law, narrow_face_law = (
         EndLaw(exponent=0.5).with_intensity(edges, pressure, face_width * width).intensity_error
         for face_width in (129.0, 127.0)
     )
     assert wide_face_law == pytest.approx(3e-3 * 2.0)
     assert narrow_face_law - wide_face_law == pytest.approx(0.08 * 2.0)
-    nearly_flush = EndLaw(exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
-    assert nearly_flush.intensity_error == np.inf
+    nearly_flush_law = EndLaw(exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
+    assert nearly_flush_law.intensity_error == np.inf
 
 
 def test_elastic_end_has_larger_error_of_change() -> None:
     """The factor 1.5 multiplies the change with the limits of the fit, not the error of the steps."""
-    pressure = column_means(EDGES, 0.5, 2.0, 0.01)[:, None]
+    pressure = compute_column_means(EDGES, 0.5, 2.0, 0.01)[:, None]
     pressure[np.searchsorted(EDGES, 90.0)] *= 1.1
     rigid_law, elastic_law = (
         EndLaw(exponent=exponent).with_intensity(EDGES, pressure, np.inf) for exponent in (0.5, np.nextafter(0.5, 0.0))
@@ -239,8 +239,8 @@ def test_elastic_end_has_larger_error_of_change() -> None:
 
 
 def test_rigid_exponent_bounds_elastic_exponent() -> None:
-    edges = graded_edges(1e-3)
-    law = EndLaw(exponent=np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
+    edges = make_graded_edges(1e-3)
+    law = EndLaw(exponent=np.nan).with_intensity(edges, compute_column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
     assert 0.49 < law.exponent <= 0.5
 
 

@@ -103,7 +103,7 @@ def test_wide_blend_raises_error(chamfered_roller) -> None:
     assert caught.value.parameter == "blend_radius"
 
 
-def corner_law(distance: np.ndarray, d0: float) -> np.ndarray:
+def make_corner_law(distance: np.ndarray, d0: float) -> np.ndarray:
     """Pressure over `corner_intensity` on the inner side of a corner."""
     return 2 * np.arcsinh(np.sqrt(d0 / (4 * distance)))
 
@@ -148,8 +148,8 @@ def test_corner_distance_error_covers_finer_columns(angle: float, material: cs.M
     is_inner = (x > 2e-5 * a) & (x < 2e-3 * a)
     distance, law = x[is_inner], pressure[is_inner] / float(result.corner_intensity)
     assert is_inner.sum() > 10
-    assert (law > corner_law(distance, d0 - error)).all()
-    assert (law < corner_law(distance, d0 + error)).all()
+    assert (law > make_corner_law(distance, d0 - error)).all()
+    assert (law < make_corner_law(distance, d0 + error)).all()
     if angle >= 8:
         assert -x[pressure > 0].min() == pytest.approx(d0 / 4, rel=0.3)
 

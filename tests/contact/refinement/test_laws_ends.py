@@ -14,7 +14,7 @@ SECTION_PRESSURE = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
 """Pressure across the contact; the parabola through its squares has the maximum 1 between the cells."""
 
 
-def column_means(coefficients: list[float], edges: FloatArray) -> FloatArray:
+def compute_column_means(coefficients: list[float], edges: FloatArray) -> FloatArray:
     """Means over columns of a polynomial in the distance from the middle."""
     complete = np.polynomial.polynomial.polyint(coefficients)
     mid_x = 0.5 * (edges[0] + edges[-1])
@@ -36,7 +36,7 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """The value is exact for a parabola, between the cells along y as well."""
     half_length = 0.5 * (EDGES[-1] - EDGES[0])
     coefficients = [1.0, tilt, 1.5]
-    values, correction_y = evaluate_columns(column_means(coefficients, EDGES))
+    values, correction_y = evaluate_columns(compute_column_means(coefficients, EDGES))
     peaks = values["peak_pressure"]
     exact_pressures = [
         float(np.polynomial.polynomial.polyval(position, coefficients)) for position in (-half_length, half_length)
@@ -45,7 +45,7 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     higher_end = 1 if tilt > 0 else 0
     assert peaks[higher_end] == pytest.approx(exact_pressures[higher_end], rel=1e-9)
     # The peak of the other half lies at mid-length between two columns, or on the outermost column.
-    centres, column_pressures = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], column_means(coefficients, EDGES)
+    centres, column_pressures = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], compute_column_means(coefficients, EDGES)
     expected = column_pressures[(centres < half_length) if higher_end else (centres > half_length)].max()
     assert peaks[1 - higher_end] == pytest.approx(max(expected, np.interp(half_length, centres, column_pressures)))
     assert 1 + correction_y == pytest.approx(1 / SECTION_PRESSURE.max())
@@ -82,8 +82,8 @@ def test_end_loads_integrate_one_half_width(width: float) -> None:
 
 def test_values_mirror_with_side() -> None:
     column_values = np.arange(EDGES.size - 1.0)
-    first, last = (count_from_end(side, EDGES, column_values) for side in (0, 1))
-    assert first[0][0] == last[0][0] == 0.0
-    assert first[0][-1] == pytest.approx(last[0][-1])
-    assert np.diff(last[0]) == pytest.approx(np.diff(EDGES)[::-1])
-    assert last[1].tolist() == column_values[::-1].tolist()
+    first_count, last_count = (count_from_end(side, EDGES, column_values) for side in (0, 1))
+    assert first_count[0][0] == last_count[0][0] == 0.0
+    assert first_count[0][-1] == pytest.approx(last_count[0][-1])
+    assert np.diff(last_count[0]) == pytest.approx(np.diff(EDGES)[::-1])
+    assert last_count[1].tolist() == column_values[::-1].tolist()

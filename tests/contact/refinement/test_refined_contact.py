@@ -38,10 +38,10 @@ from tests.contact.refinement.rollers import (
     RADIUS,
     SHORT,
     STEEL,
-    filleted_roller,
-    finer_peak,
-    finite_body,
-    peak_between_cells,
+    compute_finer_peak,
+    find_peak_between_cells,
+    make_filleted_roller,
+    make_finite_body,
     refine_case,
 )
 
@@ -51,10 +51,10 @@ KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
 
 def test_fillet_peak_error_covers_finer_cells() -> None:
     fillet_radius = 0.2e-3
-    case = Case(body=HALF_SPACE, roller=filleted_roller(fillet_radius), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=make_filleted_roller(fillet_radius), max_pressure=PRESSURE)
     computed = refine_case(case)
     peak, error = computed.refined.peak, computed.refined.peak_error
-    finer_cells_peak = finer_peak(case, computed, 2)
+    finer_cells_peak = compute_finer_peak(case, computed, 2)
     assert computed.refined.accurate
     assert abs(peak - finer_cells_peak) <= error <= 0.01 * peak
     assert abs(peak - finer_cells_peak) < 0.003 * peak
@@ -64,20 +64,20 @@ def test_fillet_peak_error_covers_finer_cells() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("fillet_radius", [max(KNOWN_FILLETS), min(KNOWN_FILLETS)])
 def test_fillet_peak_error_covers_four_times_finer_cells(fillet_radius: float) -> None:
-    case = Case(body=HALF_SPACE, roller=filleted_roller(fillet_radius), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=make_filleted_roller(fillet_radius), max_pressure=PRESSURE)
     computed = refine_case(case)
-    finer_cells_peak = finer_peak(case, computed, 4)
+    finer_cells_peak = compute_finer_peak(case, computed, 4)
     assert finer_cells_peak / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet_radius], rel=1e-3)
     assert abs(computed.refined.peak - finer_cells_peak) <= computed.refined.peak_error <= 0.01 * computed.refined.peak
     assert abs(computed.refined.peak - finer_cells_peak) < 0.01 * finer_cells_peak
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("body", [finite_body(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
+@pytest.mark.parametrize("body", [make_finite_body(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
 def test_peak_error_between_free_ends_covers_finer_cells(body: FiniteLengthSpace | QuarterSpace) -> None:
-    case = Case(body=body, roller=filleted_roller(0.2e-3), max_pressure=PRESSURE)
+    case = Case(body=body, roller=make_filleted_roller(0.2e-3), max_pressure=PRESSURE)
     computed = refine_case(case)
-    assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
+    assert abs(computed.refined.peak - compute_finer_peak(case, computed, 2)) <= computed.refined.peak_error
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if name not in ("inside", "tilt")])
@@ -90,7 +90,7 @@ def test_refined_contact_matches_uniform_cells(name: str) -> None:
     assert error <= 0.01 * peak
     # On these uniform cells the peak at a fillet of 3 a has an error of 0.5 percent, the peak at an edge of the body 3.
     peak_tolerance = 0.03 if case.roller.material is not None else 0.006
-    assert peak == pytest.approx(peak_between_cells(uniform_result.pressure.values), rel=peak_tolerance)
+    assert peak == pytest.approx(find_peak_between_cells(uniform_result.pressure.values), rel=peak_tolerance)
     assert float(computed.approach) == pytest.approx(float(uniform_result.approach), rel=1e-3)
     assert float(computed.tilt) == pytest.approx(float(uniform_result.tilt), rel=5e-3, abs=1e-9)
     assert abs(float(computed.load_error)) < 1e-9
@@ -100,11 +100,11 @@ def test_refined_contact_matches_uniform_cells(name: str) -> None:
         assert float((forces * computed.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
     # Loads on eight sections of equal length
     section_edges = np.linspace(*case.contact_range, 9)
-    loads = [cumulative_load(variant, section_edges) for variant in (computed, uniform_result)]
+    loads = [compute_cumulative_load(variant, section_edges) for variant in (computed, uniform_result)]
     assert np.abs(loads[0] - loads[1]).max() < 2e-3 * case.normal_load
 
 
-def cumulative_load(result: xr.Dataset, x: FloatArray) -> FloatArray:
+def compute_cumulative_load(result: xr.Dataset, x: FloatArray) -> FloatArray:
     widths = (
         result.x_width.values
         if "x_width" in result.coords
@@ -121,13 +121,17 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
         refine_case(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
         for tilt in (8e-4, -8e-4)
     ]
-    tilted, mirrored = (variant.refined for variant in contacts)
-    assert tilted.peak == pytest.approx(mirrored.peak, rel=1e-4)
-    assert np.allclose(tilted.pressure.max(axis=1), mirrored.pressure[::-1].max(axis=1), atol=1e-4 * tilted.peak)
+    tilted_contact, mirrored_contact = (variant.refined for variant in contacts)
+    assert tilted_contact.peak == pytest.approx(mirrored_contact.peak, rel=1e-4)
+    assert np.allclose(
+        tilted_contact.pressure.max(axis=1),
+        mirrored_contact.pressure[::-1].max(axis=1),
+        atol=1e-4 * tilted_contact.peak,
+    )
 
 
 def test_measured_fillet_has_peak_of_fillet() -> None:
-    formula_profile = filleted_roller(0.2e-3).profile
+    formula_profile = make_filleted_roller(0.2e-3).profile
     point_distances = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
     x = np.unique(
         np.concatenate([-LENGTH / 2 + point_distances, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - point_distances])
@@ -181,7 +185,7 @@ class MutableCrown:
 
 
 def test_cache_compares_cases_by_value() -> None:
-    case = Case(body=HALF_SPACE, roller=filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE)
+    case = Case(body=HALF_SPACE, roller=make_filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE)
     first_contact = refine_contact(case, 0.05, 1e-6)
     assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first_contact
     assert refine_contact(case, 0.04, 1e-6) is not first_contact
@@ -211,18 +215,18 @@ def test_cell_number_is_least_sufficient_number(accuracy: float, fraction: float
     """The error between cells is 0.7 over the square of the number of cells across the contact."""
     cells = _cell_number_y(fraction, accuracy)
 
-    def remaining_error(cells: int) -> float:
+    def compute_remaining_error(cells: int) -> float:
         return 0.7 / (cells * fraction) ** 2
 
-    assert remaining_error(cells) <= 0.25 * accuracy or cells == 256
-    assert remaining_error(cells // 2) > 0.25 * accuracy or cells == 32
+    assert compute_remaining_error(cells) <= 0.25 * accuracy or cells == 256
+    assert compute_remaining_error(cells // 2) > 0.25 * accuracy or cells == 32
 
 
 @pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
 def test_face_length_beyond_roller_end(distance: float) -> None:
     """The face is the distance to the body's end; it is zero for ends in one plane and for an overhanging roller."""
-    body = finite_body(1.5e-3)
-    case = Case(body=body, roller=filleted_roller(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
+    body = make_finite_body(1.5e-3)
+    case = Case(body=body, roller=make_filleted_roller(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
     shape = _axial_shape(case)
     face_lengths = shape.face_beyond
     assert shape.depth == pytest.approx(case.hertz_half_width**2 / (2 * RADIUS))
@@ -232,7 +236,7 @@ def test_face_length_beyond_roller_end(distance: float) -> None:
 
 
 def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None:
-    case, attempts = Case(body=HALF_SPACE, roller=filleted_roller(0.2e-3), max_pressure=PRESSURE), []
+    case, attempts = Case(body=HALF_SPACE, roller=make_filleted_roller(0.2e-3), max_pressure=PRESSURE), []
 
     def raise_window_error(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
         attempts.append(half_window / case.hertz_half_width)
@@ -246,7 +250,7 @@ def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 WINDOW_CASES = {
-    "peaks at fillets": Case(body=HALF_SPACE, roller=filleted_roller(0.2e-3, 1e-3), max_pressure=PRESSURE),
+    "peaks at fillets": Case(body=HALF_SPACE, roller=make_filleted_roller(0.2e-3, 1e-3), max_pressure=PRESSURE),
     "even": Case(
         body=FiniteLengthSpace(length=1e-3, material=STEEL, model="mirror"),
         roller=Roller(radius=RADIUS, length=1e-3),

@@ -88,9 +88,9 @@ def test_approach_on_given_cells_and_rough_surfaces() -> None:
     assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ_LOAD, rel=0.02)
     flat_heights = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
     untilted_case = replace(SHORT_CASE, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
-    smooth = solve(untilted_case, stresses=False, accuracy=0.1)
+    untilted_result = solve(untilted_case, stresses=False, accuracy=0.1)
     assert float(solve(untilted_case, roughness=flat_heights, stresses=False).normal_load) == pytest.approx(
-        float(smooth.normal_load), rel=0.02
+        float(untilted_result.normal_load), rel=0.02
     )
 
 
@@ -151,17 +151,17 @@ def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> Non
     contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ_LOAD), 0.1, 1e-4)
     attempts: list[float] = []
 
-    def power_law_contact(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+    def make_power_law_contact(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
         attempts.append(loaded_case.normal_load)
         first_touch = float(contact_at_load.contact.shape.gap.values.min())
         depth = (APPROACH - first_touch) * (loaded_case.normal_load / HERTZ_LOAD) ** (2 / 3)
         return replace(contact_at_load, contact=replace(contact_at_load.contact, approach=first_touch + depth))
 
-    monkeypatch.setattr(refined_contact, "refine_contact", power_law_contact)
+    monkeypatch.setattr(refined_contact, "refine_contact", make_power_law_contact)
     search_load(BALL, APPROACH, 0.2 * HERTZ_LOAD, 0.1, 1e-4)
-    factors = np.array(attempts) / HERTZ_LOAD
-    assert factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
-    assert factors[2:] == pytest.approx([LOAD_EXCESS])
+    load_factors = np.array(attempts) / HERTZ_LOAD
+    assert load_factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
+    assert load_factors[2:] == pytest.approx([LOAD_EXCESS])
     attempts.clear()
     search_load(BALL, APPROACH, 1.06 * HERTZ_LOAD, 0.1, 1e-4)
     assert len(attempts) == 1

@@ -16,9 +16,9 @@ from tests.contact.refinement.rollers import (
     RADIUS,
     SHORT,
     STEEL,
-    filleted_roller,
-    finer_peak,
-    finite_body,
+    compute_finer_peak,
+    make_filleted_roller,
+    make_finite_body,
     refine_case,
 )
 
@@ -47,7 +47,9 @@ def test_edge_peak_matches_small_fillet() -> None:
     )
     law = sharp_contact.refined.laws[0]
     assert law is not None
-    filleted_contact = refine_case(Case(body=HALF_SPACE, roller=filleted_roller(fillet_radius), max_pressure=PRESSURE))
+    filleted_contact = refine_case(
+        Case(body=HALF_SPACE, roller=make_filleted_roller(fillet_radius), max_pressure=PRESSURE)
+    )
     assert filleted_contact.refined.accurate
     assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet_radius) == pytest.approx(
         filleted_contact.refined.peak, rel=0.01
@@ -56,7 +58,7 @@ def test_edge_peak_matches_small_fillet() -> None:
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     """The end pressure is 0.497 p0, extrapolated from columns down to 0.003 a."""
-    case = Case(body=finite_body(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
+    case = Case(body=make_finite_body(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     contact = refine_case(case)
     computed, values = contact.refined, refined_values(case, contact)
     assert computed.laws == [None, None]
@@ -80,7 +82,7 @@ def test_tilted_end_without_correction_has_logarithm() -> None:
     laws = refine_case(case).refined.laws
     assert 0.0 in [law.exponent for law in laws if law is not None]
     computed = refine_case(
-        Case(body=finite_body(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
+        Case(body=make_finite_body(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     ).refined
     assert computed.laws == [None, None]
     assert computed.values["end_pressure"][0] < computed.values["end_pressure"][1] < computed.peak
@@ -98,7 +100,7 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
     """The exponent of a 90 degree edge on a half-space of the same material without friction is about 0.226."""
     half_width = 2 * HALF_WIDTH
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
-    case = Case(body=finite_body(60 * half_width), roller=roller, max_pressure=PRESSURE)
+    case = Case(body=make_finite_body(60 * half_width), roller=roller, max_pressure=PRESSURE)
     laws = refine_case(case).refined.laws
     for law in laws:
         assert law is not None
@@ -107,11 +109,13 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
 
 def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
-    case = Case(body=finite_body(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
+    case = Case(
+        body=make_finite_body(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE
+    )
     computed = refine_case(case)
     assert computed.refined.values["end_pressure"] == [0.0, 0.0]
     assert computed.refined.errors["end_pressure"] == [0.0, 0.0]
-    assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
+    assert abs(computed.refined.peak - compute_finer_peak(case, computed, 2)) <= computed.refined.peak_error
     assert computed.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
 
 
@@ -121,7 +125,7 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
     case, flush_case = (
         Case(
             body=QuarterSpace(material=STEEL),
-            roller=filleted_roller(0.2e-3, SHORT, material),
+            roller=make_filleted_roller(0.2e-3, SHORT, material),
             max_pressure=PRESSURE,
             end_distance=distance_over_a * HALF_WIDTH,
         )
@@ -142,7 +146,7 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
 def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     """At 1e-4 a no column resolves the law; at 0.05 a the error of the fitted intensity is some percent."""
     case = Case(
-        body=finite_body(LENGTH + 2 * distance * HALF_WIDTH),
+        body=make_finite_body(LENGTH + 2 * distance * HALF_WIDTH),
         roller=Roller(radius=RADIUS, length=LENGTH),
         max_pressure=PRESSURE,
     )
@@ -167,7 +171,7 @@ def test_fading_end_has_infinite_error() -> None:
 
 
 def test_single_loaded_sharp_end_has_law() -> None:
-    body = finite_body(3e-3)
+    body = make_finite_body(3e-3)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=2e-3)
     unloaded_end_law, law = refine_case(case, 0.05).refined.laws
     assert unloaded_end_law is None

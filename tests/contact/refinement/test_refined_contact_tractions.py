@@ -205,7 +205,7 @@ def test_cells_double_until_changes_meet_accuracy(
     contact = make_contact(case, 1e9, x=0.0, y=1e-3, spin=0.0)
     full_sliding, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
 
-    def contact_on_cells(
+    def solve_on_cells(
         case: Case, refined: RefinedContact, cells: int, coarse_contact: FrictionalContact | None
     ) -> FrictionalContact:
         rows.append(cells)
@@ -217,7 +217,7 @@ def test_cells_double_until_changes_meet_accuracy(
     refined_contact = refine_contact(replace(STEEL_CASE, friction=0.0), 0.05, 1e-6)
     cells = refined_contact.contact.shape.grid.cells_y
     max_count = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
-    monkeypatch.setattr(module, "_contact_on_rows", contact_on_cells)
+    monkeypatch.setattr(module, "_contact_on_rows", solve_on_cells)
     monkeypatch.setattr(module, "replace_contact", lambda refined, contact, case: refined_contact)
     _, _, errors = refine_tractions(case, refined_contact, accuracy)
     assert rows == [cells // 2 * 2**index for index in range(min(solution_count, max_count))]

@@ -39,7 +39,7 @@ Y = (np.arange(16) - 7.5) / 8
 def make_shape(
     length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
 ) -> AxialShape:
-    exponents = [np.nan if elastic or variant == 0 else RIGID for variant in face_beyond]
+    exponents = [np.nan if elastic or refined_contact == 0 else RIGID for refined_contact in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
@@ -81,11 +81,11 @@ def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
 @given(marked_columns=marked_edges())
 def test_split_halves_marked_columns(marked_columns: tuple[FloatArray, BoolArray]) -> None:
     edges, is_marked = marked_columns
-    finer = split_columns(edges, is_marked)
-    assert np.all(np.isin(edges, finer))
+    fine_edges = split_columns(edges, is_marked)
+    assert np.all(np.isin(edges, fine_edges))
     centres = 0.5 * (edges[1:] + edges[:-1])
-    assert np.all(np.isin(centres[is_marked], finer))
-    widths = np.diff(finer)
+    assert np.all(np.isin(centres[is_marked], fine_edges))
+    widths = np.diff(fine_edges)
     assert np.all(widths > 0)
     if is_marked.any():
         assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= MAX_WIDTH_RATIO * (1 + 1e-12))
@@ -154,9 +154,9 @@ def test_errors_cover_peak_and_ends(name: str, accuracy: float) -> None:
     assert computed.accurate
     assert computed.laws == [None, None]
     assert abs(computed.peak - peak) <= computed.peak_error <= accuracy * peak * (1 + 1e-9)
-    ends = line_pressure(np.array([0.0, LENGTH]))
+    end_pressures = line_pressure(np.array([0.0, LENGTH]))
     for end_pressure, error, exact_pressure in zip(
-        computed.values["end_pressure"], computed.errors["end_pressure"], ends, strict=True
+        computed.values["end_pressure"], computed.errors["end_pressure"], end_pressures, strict=True
     ):
         assert abs(end_pressure - exact_pressure) <= error + 1e-12
 
@@ -171,14 +171,19 @@ def test_tighter_accuracy_takes_more_columns() -> None:
 
 @given(bump_position=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
 def test_mirrored_pressure_is_refined_to_mirrored_columns(bump_position: float, height: float, width: float) -> None:
-    def pressure_with_bump(x: FloatArray) -> FloatArray:
+    def compute_pressure_with_bump(x: FloatArray) -> FloatArray:
         return np.asarray(1 + height * np.exp(-(((x - bump_position) / width) ** 2)))
 
-    original = refine_columns(make_column_solver(pressure_with_bump), make_shape(), 0.02)
-    mirrored = refine_columns(make_column_solver(lambda x: pressure_with_bump(LENGTH - x)), make_shape(), 0.02)
-    assert mirrored.peak == pytest.approx(original.peak, rel=2e-3)
-    assert abs(mirrored.edges.size - original.edges.size) <= 4
-    assert abs(original.peak - float(pressure_with_bump(np.linspace(0, LENGTH, 20001)).max())) <= original.peak_error
+    original_columns = refine_columns(make_column_solver(compute_pressure_with_bump), make_shape(), 0.02)
+    mirrored_columns = refine_columns(
+        make_column_solver(lambda x: compute_pressure_with_bump(LENGTH - x)), make_shape(), 0.02
+    )
+    assert mirrored_columns.peak == pytest.approx(original_columns.peak, rel=2e-3)
+    assert abs(mirrored_columns.edges.size - original_columns.edges.size) <= 4
+    assert (
+        abs(original_columns.peak - float(compute_pressure_with_bump(np.linspace(0, LENGTH, 20001)).max()))
+        <= original_columns.peak_error
+    )
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
@@ -218,13 +223,13 @@ def test_unresolved_pressure_ends_at_maximum_columns() -> None:
     assert computed.peak_error > 0.001 * computed.peak
 
 
-def power_law(x: FloatArray) -> FloatArray:
+def compute_power_law(x: FloatArray) -> FloatArray:
     """Pressure that is singular at the first end."""
     return np.asarray(0.7 / np.sqrt(x))
 
 
 SCALED_PRESSURES = AXIAL_PRESSURES | {
-    "singular": power_law,
+    "singular": compute_power_law,
     "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
     "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
     "rises to one end": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2),
@@ -241,7 +246,7 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
     first."""
     pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
-    def unit_position(x: FloatArray) -> FloatArray:
+    def compute_unit_position(x: FloatArray) -> FloatArray:
         """Distances from the first end, in the original unit."""
         return x / unit - offset if end == 0 else LENGTH - (x / unit - offset)
 
@@ -251,7 +256,7 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         order = slice(None, None, 1 - 2 * end)
         return make_column_pressure(
-            pressure * unit_solver(unit_position(edges)[order], None, tolerance).pressure[order]
+            pressure * unit_solver(compute_unit_position(edges)[order], None, tolerance).pressure[order]
         )
 
     face_beyond, exponents = (3.0, 0.0), (RIGID, np.nan)
@@ -273,13 +278,13 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
         stop=unit * (offset + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
-        height=lambda x: unit * height(unit_position(x)),
+        height=lambda x: unit * height(compute_unit_position(x)),
         face_beyond=(unit * face_beyond[end], unit * face_beyond[1 - end]),
         exponents=exponents[:: 1 - 2 * end],
     )
     shifted_result = refine_columns(solve, shifted_shape, 0.02)
     assert (shifted_result.accurate, shifted_result.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
-    assert np.sort(unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
+    assert np.sort(compute_unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
         for values, expected in ((shifted_result.values, baseline.values), (shifted_result.errors, baseline.errors)):
             assert np.array(values[key])[:: 1 - 2 * end] / factor == pytest.approx(expected[key], rel=1e-6), key
@@ -294,7 +299,7 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
                 assert getattr(computed, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
 
 
-def outermost_widths(
+def list_outermost_widths(
     name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, elastic: bool = False
 ) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
@@ -305,16 +310,16 @@ def outermost_widths(
 
 @pytest.mark.parametrize("elastic", [False, True])
 def test_sharper_ends_have_narrower_columns(*, elastic: bool) -> None:
-    for width in outermost_widths("falls to the end"):
+    for width in list_outermost_widths("falls to the end"):
         assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
-        assert 0.3 * MIN_END_COLUMN < outermost_widths(name)[1] <= MIN_END_COLUMN
+        assert 0.3 * MIN_END_COLUMN < list_outermost_widths(name)[1] <= MIN_END_COLUMN
     for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
-        widths = outermost_widths("falls to the end", face_beyond, elastic=elastic)
+        widths = list_outermost_widths("falls to the end", face_beyond, elastic=elastic)
         sharp_end = face_beyond.index(2.0)
         assert 0.1 * MIN_END_COLUMN < widths[sharp_end] <= MIN_END_COLUMN
         assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp_end] <= END_COLUMN_WIDTH
-    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
+    assert min(list_outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
 
 
 def test_columns_near_contact_ends_are_narrow() -> None:
@@ -394,21 +399,21 @@ def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ([0.0, 0.0], [0.0, 0.0])
     make_column_pressure = computed.pressure.copy()
     make_column_pressure[:20] += 0.02 * computed.pressure.max()
-    variant = replace_pressure(computed, make_column_pressure, request)
-    first, last = variant.values["end_pressure"]
-    assert first > 0
-    assert variant.errors["end_pressure"] == [first, last] == [first, 0.0]
+    refined_contact = replace_pressure(computed, make_column_pressure, request)
+    first_pressure, last_pressure = refined_contact.values["end_pressure"]
+    assert first_pressure > 0
+    assert refined_contact.errors["end_pressure"] == [first_pressure, last_pressure] == [first_pressure, 0.0]
 
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
 def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
     computed = refine_columns(make_column_solver(SCALED_PRESSURES["even"]), make_shape(), 0.02)
 
-    def peak_error(peaks: tuple[float, ...]) -> float:
+    def compute_peak_error(peaks: tuple[float, ...]) -> float:
         return replace(computed, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
 
-    assert np.isinf(peak_error((1.0, 1.0)))
-    assert peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
+    assert np.isinf(compute_peak_error((1.0, 1.0)))
+    assert compute_peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
 
 
 def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:

@@ -58,7 +58,7 @@ def test_newton_restarts_from_descent(monkeypatch: pytest.MonkeyPatch, has_presc
     check_law(request, computed)
 
 
-def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
+def make_graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
     """Cells of different sizes in some units, on which the compliance times the areas is symmetric."""
     rng = np.random.default_rng(seed)
     bound, relative_areas = pressure * rng.uniform(0.2, 1.0, CELLS), rng.uniform(0.2, 2.0, CELLS)
@@ -84,7 +84,7 @@ def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, force
 @pytest.mark.parametrize(("unit", "pressure"), [(1e-6, 1.0), (1.0, 1.0), (1.0, 1e-9), (1e3, 1e9)])
 @pytest.mark.parametrize("forces", [False, True])
 def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
-    request = graded_problem(8, unit=unit, pressure=pressure, forces=forces)
+    request = make_graded_problem(8, unit=unit, pressure=pressure, forces=forces)
     applications: list[int] = []
 
     def count_applications(traction: np.ndarray) -> np.ndarray:
@@ -106,7 +106,7 @@ def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, fo
 @pytest.mark.parametrize("seed", range(3))
 def test_descent_steps_reduce_energy(seed: int) -> None:
     """A decreasing energy excludes cycles."""
-    request, energies = graded_problem(seed), []
+    request, energies = make_graded_problem(seed), []
     for steps in range(12):
         zero = np.zeros((2, CELLS))
         computed, _ = descend_energy(

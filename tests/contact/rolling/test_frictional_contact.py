@@ -33,7 +33,7 @@ HALF_SPACE = HalfSpace(material=STEEL)
 EQUAL_HALF_SPACE = Counterbody(HALF_SPACE)
 
 
-def ball_gap(cells: int = 26, half_window: float = 1.3, centre_x: float = 0.0) -> xr.DataArray:
+def make_ball_gap(cells: int = 26, half_window: float = 1.3, centre_x: float = 0.0) -> xr.DataArray:
     """Gap of a ball with a contact radius of about 1."""
     positions = half_window * ((np.arange(cells) + 0.5) / cells * 2 - 1)
     return xr.DataArray(
@@ -47,7 +47,7 @@ def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
     arguments = {
         "counterbody": EQUAL_HALF_SPACE,
-        "gap": ball_gap(),
+        "gap": make_ball_gap(),
         "load": LOAD,
         "friction": FRICTION,
         "body": HALF_SPACE,
@@ -182,7 +182,7 @@ BODIES_WITH_ENDS: dict[str, Body] = {
     ("name", "motion"), [("quarter space", "shift"), ("finite length", "all"), ("finite length", "forces")]
 )
 def test_coulomb_law_holds_at_free_ends(name: str, motion: str) -> None:
-    body, gap = BODIES_WITH_ENDS[name], ball_gap(26)
+    body, gap = BODIES_WITH_ENDS[name], make_ball_gap(26)
     gap = gap.assign_coords(x=gap.x + 1.3)
     counterbody = Counterbody(body) if isinstance(body, FiniteLengthSpace) else None
     check_law(solve_rolling(MOTIONS[motion], body=body, gap=gap, counterbody=counterbody))
@@ -278,35 +278,35 @@ def test_invalid_input_raises_error() -> None:
         solve_rolling(Rolling(force_y=0.0), friction=0.0)
     with pytest.raises(InvalidInputError, match=r"force_y, moment_z = .*force_y = .* N, moment_z = .* N m"):
         solve_rolling(Rolling(force_y=0.9 * FRICTION * LOAD, moment_z=0.4 * FRICTION * LOAD))
-    shifted = solve_rolling(Shift(y=0.01))
+    shifted_result = solve_rolling(Shift(y=0.01))
     with pytest.raises(InvalidInputError, match="rolling is steady"):
-        solve_rolling(Rolling(), after=shifted)
+        solve_rolling(Rolling(), after=shifted_result)
     with pytest.raises(InvalidInputError, match=r"after = .*cells"):
-        solve_rolling(Shift(y=0.01), after=shifted, gap=ball_gap(20))
+        solve_rolling(Shift(y=0.01), after=shifted_result, gap=make_ball_gap(20))
     with pytest.raises(InvalidInputError, match="after = 'without traction_x'"):
-        solve_rolling(Shift(y=0.01), after=shifted.drop_vars("traction_x"))
+        solve_rolling(Shift(y=0.01), after=shifted_result.drop_vars("traction_x"))
     with pytest.raises(InvalidInputError, match=r"load = 0.0.*positive"):
-        solve_rolling(Shift(y=0.01), after=shifted, load=0.0)
+        solve_rolling(Shift(y=0.01), after=shifted_result, load=0.0)
     with pytest.raises(InvalidInputError, match="motion = 'rolls'"):
         solve_rolling("rolls")  # type: ignore[arg-type]
     with pytest.raises(WindowError, match=r"last two cells along \+y"):
-        solve_rolling(Rolling(), gap=ball_gap(26, 1.04))
+        solve_rolling(Rolling(), gap=make_ball_gap(26, 1.04))
 
 
-GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
+GRADED_GRID = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
 
 
 @pytest.mark.parametrize("name", ["all", "moment", "shift"])
 def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
     """On graded cells Coulomb's law holds, and the resultants approximate those on uniform cells."""
     gap = xr.DataArray(
-        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
-        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
+        0.05 * (GRADED_GRID.x[:, None] ** 2 + GRADED_GRID.y**2),
+        coords={"x": GRADED_GRID.x, "y": GRADED_GRID.y, "x_width": ("x", GRADED_GRID.widths)},
         dims=("x", "y"),
     )
     graded_result, uniform_result = solve_rolling(MOTIONS[name], gap=gap), solve_rolling(MOTIONS[name])
     check_law(graded_result)
-    areas = GRADED.widths[:, None] * GRADED.dy
+    areas = GRADED_GRID.widths[:, None] * GRADED_GRID.dy
     for axis in "xy":
         assert float((graded_result[f"traction_{axis}"] * areas).sum()) == pytest.approx(
             float(graded_result[f"force_{axis}"])
@@ -323,8 +323,8 @@ def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
 
 def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:
     gap = xr.DataArray(
-        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
-        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
+        0.05 * (GRADED_GRID.x[:, None] ** 2 + GRADED_GRID.y**2),
+        coords={"x": GRADED_GRID.x, "y": GRADED_GRID.y, "x_width": ("x", GRADED_GRID.widths)},
         dims=("x", "y"),
     )
     motion = Rolling(longitudinal_creepage=0.01, spin=0.01, model="fastsim")
@@ -345,15 +345,15 @@ def test_unconverged_tractions_warn() -> None:
 def test_reference_x_is_middle_of_finite_gap() -> None:
     """Further cells with an infinite gap, and another position along x, change no moment and no spin."""
     motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
-    baseline, gap = solve_rolling(motion, gap=ball_gap(centre_x=0.2)), ball_gap(centre_x=0.2)
+    baseline, gap = solve_rolling(motion, gap=make_ball_gap(centre_x=0.2)), make_ball_gap(centre_x=0.2)
     step = float(gap.x[1] - gap.x[0])
     wider_x = np.concatenate([gap.x.values, gap.x.values[-1] + step * np.arange(1.0, 9.0)]) + 5.0
     wider_gap = xr.DataArray(
         np.vstack([gap.values, np.full((8, gap.y.size), np.inf)]), coords={"x": wider_x, "y": gap.y}, dims=("x", "y")
     )
-    variant = solve_rolling(motion, gap=wider_gap)
+    wide_result = solve_rolling(motion, gap=wider_gap)
     for name in ("moment_z", "force_y", "friction_work"):
-        assert float(variant[name]) == pytest.approx(float(baseline[name]), rel=1e-5)
+        assert float(wide_result[name]) == pytest.approx(float(baseline[name]), rel=1e-5)
 
 
 def test_sticking_part_is_relative_to_loaded_area() -> None:

@@ -73,11 +73,11 @@ def solve_friction(
 def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """List with an entry per application of the operator to tractions."""
     calls: list[int] = []
-    original = SurfaceOperator.compute_displacements
+    original_displacements = SurfaceOperator.compute_displacements
 
     def count_application(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
         calls.extend([1] * (Load.ALONG_X in loads))
-        return original(self, loads, directions)
+        return original_displacements(self, loads, directions)
 
     monkeypatch.setattr(SurfaceOperator, "compute_displacements", count_application)
     return calls
@@ -147,7 +147,7 @@ def test_force_error_is_relative_to_largest_resultant(name: str) -> None:
 def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment refer to the middle at any position along the axis."""
 
-    def contact_at(start: float) -> FrictionalContact:
+    def make_contact(start: float) -> FrictionalContact:
         grid = Grid.between(start + EDGES["uniform"], (-1.3, 1.3), 26)
         gap = 0.05 * ((grid.x[:, None] - start - 0.02) ** 2 + grid.y**2)
         body = HalfSpace(material=Material(0.91, 0.3))
@@ -155,7 +155,7 @@ def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) 
         request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=start + 0.1, coupled=False)
         return frictional_contact(shape, Settings(), request)
 
-    baseline, variant = contact_at(0.0).tractions, contact_at(8.0).tractions
+    baseline, variant = make_contact(0.0).tractions, make_contact(8.0).tractions
     assert variant.traction == pytest.approx(baseline.traction, abs=1e-6 * baseline.traction.max())
     for name in ("force_x", "force_y", "moment_z", "work"):
         assert get_value(variant, name) == pytest.approx(get_value(baseline, name), rel=1e-5), name
