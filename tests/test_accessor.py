@@ -49,7 +49,7 @@ def test_accessor_text_contains_main_values(case_result: xr.Dataset, study_datas
     assert "<pre>study of" in study_dataset.contact._repr_html_()
 
 
-def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
+def test_accessor_of_opened_file_equals_result(case_result: xr.Dataset, tmp_path) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     with xr.open_dataset(tmp_path / "case.nc") as stored_result:
         assert float(stored_result.contact.largest_sample()["largest_von_mises"]) == float(

@@ -134,7 +134,9 @@ def make_strip() -> Callable[..., xr.Dataset]:
 
 
 @pytest.mark.parametrize("dims", [("x", "y", "z"), ("x_field", "y_field", "z")])
-def test_orthogonal_shear_of_line_contact(make_strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]) -> None:
+def test_orthogonal_shear_of_line_contact_equals_closed_form(
+    make_strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]
+) -> None:
     cycle = orthogonal_shear_range(make_strip(dims=dims))
     assert cycle["orthogonal_shear_range"].dims == (dims[0], "z")
     amplitude = cycle["orthogonal_shear_amplitude"].isel({dims[0]: 0})
@@ -156,7 +158,7 @@ def test_largest_orthogonal_shear_range_is_independent_of_friction(make_strip: C
     assert largest_ranges[1] == pytest.approx(largest_ranges[0], rel=5e-3)
 
 
-def test_max_shear_and_von_mises_of_line_contact(make_strip: Callable[..., xr.Dataset]) -> None:
+def test_max_shear_and_von_mises_of_line_contact_equal_published_values(make_strip: Callable[..., xr.Dataset]) -> None:
     stress = make_strip()
     assert float(maximum_shear(stress).max()) == pytest.approx(0.300, abs=5e-4)
     assert float(von_mises(stress).max()) == pytest.approx(0.5575, abs=1e-4)

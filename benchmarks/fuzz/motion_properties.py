@@ -115,8 +115,8 @@ def certificate_of_friction(solution: SolvedCase) -> bool:
 def friction_dissipates_work(solution: SolvedCase) -> bool:
     """The work of friction is positive and at most 1.5 times that of full sliding at the largest slip.
 
-    Forces and creepages determine the work. On two or three cells along rolling it is a few percent too small, and
-    without slip the work is a difference of large numbers.
+    Forces and creepages determine the work. On two or three cells along rolling, the sum is a few percent too small;
+    without slip, the work is a difference of large numbers.
     """
     result = solution.result
     loaded_row_count = int((result["pressure"].values > 0).any(axis=0).sum())

@@ -45,7 +45,7 @@ def draw_motion(rng: Random, case: Case, friction: float) -> Motion:
 def _draw_move_or_force(
     rng: Random, move: str, force: str, move_scale: float, force_scale: float
 ) -> list[tuple[str, float]]:
-    """A random creepage or displacement, its force, or neither."""
+    """Random prescribed value: a creepage or displacement, or the force in its direction, or none."""
     draw = rng.random()
     if draw < 0.3:
         return []

@@ -1,8 +1,8 @@
 """Try changes of the solver's core: ``python -m benchmarks.mutation --notes FOLDER``.
 
 First, every selected test runs once, and ``FOLDER/reached.jsonl`` stores its lines of the core and its time. Then each
-change is made in a fork of the process with all imports, and the tests of the changed statement run, in the order of
-failures per time so far. ``FOLDER/tried.jsonl`` has a line for each tested change; a second run continues with the
+change is made in a fork of the process with all imports. The tests of the changed statement run; tests with many
+failures per time run first. ``FOLDER/tried.jsonl`` has a line for each tested change; a second run continues with the
 remaining changes.
 """
 

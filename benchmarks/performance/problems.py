@@ -54,7 +54,7 @@ class Problem:
         return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
 
     def make_gap_array(self, stretch: float = 1.0) -> xr.DataArray:
-        """Gap with its coordinates; a new stretch near 1 makes a grid without a kept operator."""
+        """Gap with its coordinates; another `stretch` makes a grid whose operator is not cached."""
         cells_x, cells_y = self.gap.shape
         x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch
         y = (np.arange(cells_y) + 0.5 - cells_y / 2) * self.size[1] / cells_y * stretch

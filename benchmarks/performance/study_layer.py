@@ -83,7 +83,8 @@ def print_overhead(frictions: int) -> None:
 
 
 def print_stacking_gain(contacts: int = 10) -> None:
-    """Print the saved fraction of a contact's time if one product served the spectra of several contacts."""
+    """Print the fraction of the time of a contact that a common product of the spectra of several contacts would
+    save."""
     single_seconds = stacked_seconds = 0.0
     multiply = surface._multiply_matrices
 

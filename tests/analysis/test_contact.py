@@ -54,7 +54,7 @@ def test_invalid_interval_raises(start, stop, message: str) -> None:
         analysis.load_between(contact_of(PRESSURE_VALUES), start, stop)
 
 
-def test_results_reject_normalized_data_and_single_row() -> None:
+def test_normalized_data_and_single_row_raise() -> None:
     normalized = analysis.normalized(contact_of(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
         analysis.line_load(normalized)

@@ -39,7 +39,7 @@ def test_contact_length_and_width_count_cells():
     assert (result["contact_length"], result["contact_width"]) == (3, 3)
 
 
-def test_case_numbers_without_contact():
+def test_case_without_contact_has_zero_length_and_nan_pressure():
     result = case_numbers(contact_of(np.zeros((3, 2))))
     assert np.isnan(result["end_pressure_over_p0"])
     assert result["contact_length"] == 0

@@ -53,7 +53,7 @@ def test_edge_factors_of_filleted_roller_exceed_one(case_result: xr.Dataset) -> 
     )
 
 
-def test_edge_factors_of_study_with_reference(study_dataset: xr.Dataset) -> None:
+def test_edge_factor_over_reference_has_dimensions_of_study(study_dataset: xr.Dataset) -> None:
     half_space = study_dataset.sel(body="half-space").isel(e_over_a=0)
     edge_factors = analysis.edge_factors(study_dataset.sel(body="finite-length"), "pressure", half_space)
     assert edge_factors["over_reference_peak"].sizes == {"e_over_a": 3, "friction": 2}

@@ -54,7 +54,7 @@ def test_plane_does_not_depend_on_order_of_positions() -> None:
     )
 
 
-def test_cut_of_single_plane_result(study_dataset: xr.Dataset) -> None:
+def test_single_plane_result_has_cut_in_its_plane_only(study_dataset: xr.Dataset) -> None:
     study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
     plane = analysis.in_plane(study_case, y=0.0, variables=["von_mises", "tresca"])
     assert plane["tresca"].dims == ("x_field", "z")

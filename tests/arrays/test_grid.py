@@ -105,7 +105,7 @@ def test_growing_edges_cover_distance(distance: float, width: float) -> None:
         assert np.all(widths[1:] / widths[:-1] < MAX_WIDTH_RATIO)
 
 
-def test_growing_edges_of_zero_and_infinite_distance() -> None:
+def test_growing_edges_end_at_zero_and_infinite_distance() -> None:
     assert growing_edges(0.0, 1.0).size == 0
     assert growing_edges(np.inf, 0.5).tolist() == [0.5]
 

@@ -11,14 +11,14 @@ from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, secti
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
-def test_section_maxima_of_shifted_ellipse(offset: float, cells: int) -> None:
+def test_section_maximum_of_shifted_ellipse_is_exact(offset: float, cells: int) -> None:
     step = 3.0 / cells
     y = step * (np.arange(cells) - 0.5 * cells + 0.5 + offset)
     pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None, :]
     assert section_maxima(pressure)[0] == pytest.approx(1.0, abs=1e-9)
 
 
-def test_section_maxima_without_parabola() -> None:
+def test_section_maximum_of_few_points_is_bounded() -> None:
     pressure = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]])
     maxima = section_maxima(pressure)
     assert maxima[0] == 0

@@ -37,7 +37,7 @@ def test_life_of_uniform_slices_equals_formula(flush_roller_life: xr.Dataset) ->
     assert float(slices["reference_life"]) == pytest.approx(1e6 * bearing_life, rel=1e-9)
 
 
-def test_life_of_flush_roller_by_model(flush_roller_life: xr.Dataset) -> None:
+def test_life_of_flush_roller_depends_on_model(flush_roller_life: xr.Dataset) -> None:
     life = flush_roller_life["reference_life"]
     assert float(life.sel(model="free ends")) == pytest.approx(float(life.sel(model="slices")), rel=0.25)
     assert float(life.sel(model="half-space")) == 0  # its pressure is singular at the sharp ends

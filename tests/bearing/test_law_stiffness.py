@@ -14,6 +14,6 @@ def test_stiffness_depends_on_reference_depth() -> None:
     assert deep_stiffness == pytest.approx(490, abs=1)
 
 
-def test_stiffness_of_bearing_formulas() -> None:
+def test_stiffness_of_bearing_formulas_equals_stated_values() -> None:
     assert compute_palmgren_stiffness() == pytest.approx(491, abs=1)
     assert compute_iso_stiffness() == pytest.approx(475, abs=1)

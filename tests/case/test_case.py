@@ -69,7 +69,7 @@ def test_chosen_grid_covers_body_and_half_widths() -> None:
 @given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
 def test_grid_from_centres_equals_grid(start: float, span: float, cells: int) -> None:
     grid = Grid(x_range=(start, start + span), y_range=(-span, span), cells_x=cells, cells_y=cells + 1)
-    assume(grid.dx > 1e-9 * abs(start))  # otherwise the differences of the centres are rounding errors
+    assume(grid.dx > 1e-9 * abs(start))  # larger positions would make the differences of centres rounding errors
     restored_grid = Grid.from_centres(grid.x, grid.y)
     assert restored_grid.shape == grid.shape
     assert restored_grid.dx == pytest.approx(grid.dx, rel=1e-3)

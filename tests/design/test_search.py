@@ -40,7 +40,7 @@ BOUNDS = {"edge_drop": (1e-6, 1e-4)}
 TWO_BOUNDS = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
 
 
-def test_optimum_and_flat_range_of_parabola(install_measure) -> None:
+def test_search_finds_optimum_and_flat_range_of_parabola(install_measure) -> None:
     """Measure 1 + 4 s**2 of s decades; at s = 0.0707 it exceeds the minimum by two errors of 0.01."""
     install_measure(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
     result = best_profile(CASE, make_profile, bounds=BOUNDS)

@@ -100,9 +100,9 @@ class ReasonedSkips(SkipParser):
     """Parser of skips that requires a reason."""
 
     def __call__(self, document: Document) -> Iterable[Region]:
-        for lexed in DirectiveInHTMLCommentLexer(self.directive)(document):
-            if not re.fullmatch(r'next ".+"\s*', lexed.lexemes["arguments"] or ""):
-                line, _ = document.line_column(lexed.start).removeprefix("line ").split(",", 1)
+        for comment in DirectiveInHTMLCommentLexer(self.directive)(document):
+            if not re.fullmatch(r'next ".+"\s*', comment.lexemes["arguments"] or ""):
+                line, _ = document.line_column(comment.start).removeprefix("line ").split(",", 1)
                 raise ValueError(f'{document.path}:{line}: write <!-- skip: next "reason" -->')
         yield from super().__call__(document)
 

@@ -5,7 +5,7 @@ import xarray as xr
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 
 
-def test_status_sentence_of_unsolved_case():
+def test_status_sentence_contains_reason_of_unsolved_case():
     sentence = status_sentence("skipped", "profile: must fit the length")
     assert sentence == "This case cannot be solved. profile: must fit the length"
     assert status_sentence("missing", "") == "This case is not solved yet."

@@ -43,7 +43,7 @@ def test_mat_file_of_study_has_arrays_of_study(study_dataset: xr.Dataset, tmp_pa
     assert list(content["dims"]["peak_pressure"]) == list(study_dataset["peak_pressure"].dims)
 
 
-def test_mat_file_of_measure_or_slices(case_result: xr.Dataset, tmp_path: Path) -> None:
+def test_mat_file_contains_measure_or_slices(case_result: xr.Dataset, tmp_path: Path) -> None:
     content = read_mat(export.to_mat(case_result, tmp_path / "one.mat", "tresca"))
     np.testing.assert_allclose(content["tresca"], tresca(case_result))
     assert set(content["units"]) == {"tresca", *map(str, tresca(case_result).coords)}
@@ -67,7 +67,7 @@ def test_invalid_argument_raises(case_result: xr.Dataset, tmp_path: Path) -> Non
     assert not list(tmp_path.iterdir())
 
 
-def test_export_by_command_line(case_result: xr.Dataset, tmp_path: Path, capsys) -> None:
+def test_command_writes_mat_file_without_lines(case_result: xr.Dataset, tmp_path: Path, capsys) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     assert main(["export", str(tmp_path / "case.nc"), "--format", "mat"]) == 0
     assert read_mat(tmp_path / "case.mat")["normal_load"] == float(case_result["normal_load"])

@@ -33,7 +33,7 @@ def test_table_of_variable_has_all_points(case_result: xr.Dataset) -> None:
     )
 
 
-def test_table_of_analysis_results(case_result: xr.Dataset) -> None:
+def test_table_of_analysis_results_contains_columns_with_units(case_result: xr.Dataset) -> None:
     table = export.to_table(analysis.slices(case_result, 7))
     assert len(table) == 7
     assert "half_width [m] (error not estimated)" in table

@@ -46,7 +46,7 @@ def test_vtk_positions_are_sorted(case_result: xr.Dataset, tmp_path) -> None:
     assert np.array_equal(data["von_mises"][..., 0], case_result["von_mises"][..., :3])
 
 
-def test_vtk_of_measure_normalized_result_and_study_case(case_result, study_dataset, tmp_path) -> None:
+def test_vtk_contains_measure_of_normalized_result_and_study_case(case_result, study_dataset, tmp_path) -> None:
     coordinates, data = read_rectilinear(
         export.to_vtk(normalized(case_result), tmp_path / "over.vtr", ["tresca", "von_mises"])
     )

@@ -19,7 +19,7 @@ CRITERIA = [fatigue.dang_van, fatigue.crossland, fatigue.findley]
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
-def test_error_kind_at_points(cycle, wave, criterion) -> None:
+def test_criteria_at_points_have_no_estimated_error(cycle, wave, criterion) -> None:
     result = criterion(cycle(tau_yz=wave), LIMITS)
     assert all(array.attrs[ERROR_KIND] == NOT_ESTIMATED for array in result.values())
 

@@ -174,7 +174,7 @@ def test_narrow_window_has_an_infinite_error(line_contact) -> None:
     assert "along y" in result["peak_shakedown_stress_error"].attrs["comment"]
 
 
-def test_error_kinds_of_shakedown(line_contact) -> None:
+def test_shakedown_stress_has_no_estimated_error(line_contact) -> None:
     result = line_contact(0.1)
     assert all(array.attrs[ERROR_KIND] == NOT_ESTIMATED for array in fatigue.shakedown(result, axial=True).values())
     assert ERROR_KIND not in fatigue.shakedown_limit(result)["peak_shakedown_stress"].attrs

@@ -38,7 +38,7 @@ def solve_sliding(material: Material, friction: float) -> xr.Dataset:
 
 
 @pytest.mark.parametrize(("friction", "material"), [(0.05, STEEL), (0.3, INCOMPRESSIBLE)])
-def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -> None:
+def test_edge_tension_of_sliding_cylinder_equals_closed_form(material: Material, friction: float) -> None:
     """Friction adds 2 f p0 of the section to the stress of the normal load."""
     results = [solve_sliding(material, value) for value in (friction, 1e-6)]
     mid_x = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
@@ -54,7 +54,7 @@ def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -
     assert float(tension["trailing_edge"][0]) == pytest.approx(-section_half_width, rel=1e-2)
 
 
-def test_edge_tension_of_mirrored_case() -> None:
+def test_edge_tension_of_opposite_sliding_is_mirrored() -> None:
     forward_tension, backward_tension = (edge_tension(solve_sliding(STEEL, friction)) for friction in (0.2, -0.2))
     np.testing.assert_allclose(forward_tension["edge_tension"], backward_tension["edge_tension"], rtol=1e-6)
     np.testing.assert_allclose(forward_tension["trailing_edge"], -backward_tension["trailing_edge"], rtol=1e-6)

@@ -80,7 +80,7 @@ def test_axial_traction_is_symmetric_if_reversed() -> None:
         (72, 1.34, 0.012),
     ],  # error over p0, at the positions of the edge with the largest error
 )
-def test_stress_next_to_last_cell_under_sliding_line(cells_y: int, window: float, max_error: float) -> None:
+def test_stress_at_last_cell_under_sliding_line_is_accurate(cells_y: int, window: float, max_error: float) -> None:
     """The von Mises stress at the centre of this cell, which the search includes, is within 0.8 percent."""
     body, radius, half_width, friction = HalfSpace(material=Material(210e9, 0.3)), 5e-3, 50e-6, 0.3
     modulus, length = body.material.plane_strain_modulus, 100 * half_width

@@ -38,7 +38,7 @@ def solve_finite_elements(depths: tuple[float, ...]) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_surface_displacement_relative_to_reference_depth() -> None:
+def test_surface_displacement_relative_to_reference_depth_equals_finite_elements() -> None:
     """The approach of a contact is this difference, see `tests/contact/normal/test_contact_reference.py`."""
     depths = (0.5 * LENGTH, LENGTH, 3 * LENGTH)
     material = unit_material(POISSON)

@@ -31,7 +31,7 @@ def test_coupled_contact_of_short_elastic_roller_converges() -> None:
     assert float(result["penetration_error"]) < 1e-6
 
 
-def test_stresses_below_single_cell_contact() -> None:
+def test_stress_below_single_cell_contact_equals_pressure() -> None:
     """A contact of one cell in a wide window has finite stresses below it."""
     body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
     case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)

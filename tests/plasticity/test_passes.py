@@ -104,7 +104,7 @@ def test_stress_at_mid_length_of_long_contact_equals_line_contact(line_contact, 
 
 
 class ShakedownState(NamedTuple):
-    """A contact between free ends, its shakedown stress, and the last of ten passes with a yield stress 3 % below."""
+    """A contact between free ends, its shakedown stress, and the last of ten passes at a yield stress 3 % below it."""
 
     contact: xr.Dataset
     shakedown_stress: float
@@ -129,7 +129,7 @@ def test_residual_stress_prevents_yield(shakedown_state) -> None:
 
 
 def test_residual_stress_equals_stress_of_plastic_strain(shakedown_state, steel_between_ends) -> None:
-    last_pass = shakedown_state.last
+    last_pass = shakedown_state.last_pass
     eigenstrain_result = eigenstrain_stress(steel_between_ends, last_pass[list(STRAINS)].drop_vars("pass_number"))
     for name in ("sigma_xx", "sigma_yy"):
         assert (

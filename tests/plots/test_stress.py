@@ -44,7 +44,7 @@ def test_largest_stress_is_marked_with_its_value(case_result, assert_nothing_cli
     assert (label_span <= ax.bbox.x1).all()
 
 
-def test_plot_of_single_plane_result(study_case):
+def test_single_plane_result_has_plot_in_its_plane_only(study_case):
     ax = plots.plot_stress_plane(study_case, "sigma_xx")
     low, high = ax.get_ylim()
     assert low > high

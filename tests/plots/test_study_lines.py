@@ -6,7 +6,7 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_panels_and_lines_of_study(study_dataset, assert_nothing_clipped, lines_of):
+def test_study_figure_has_panels_of_variables_and_lines_of_bodies(study_dataset, assert_nothing_clipped, lines_of):
     figure = plots.plot_study_lines(study_dataset, x="e_over_a", hue="body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
     assert all(len(lines_of(ax)) == 2 for ax in figure.axes)

@@ -70,7 +70,7 @@ RIDGE = Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3))
         (Halves(FullCrown(1.0), FullCrown(0.5)), [], []),
     ],
 )
-def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
+def test_slope_jumps_of_profiles_equal_formulas(profile, positions: list[float], jumps: list[float]) -> None:
     corners = find_slope_jumps(lambda x: profile.drop(x, LENGTH), LENGTH)
     np.testing.assert_allclose(corners.positions, positions, atol=1e-12)
     np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)

@@ -25,7 +25,7 @@ from tests.profiles.conftest import LENGTH, RADIUS
 CROWN = FullCrown(0.8)
 
 
-def test_drop_within_the_effective_length(positions: np.ndarray) -> None:
+def test_drop_within_effective_length_equals_inner_profile(positions: np.ndarray) -> None:
     effective_length = 0.9 * LENGTH
     inner_positions = positions[np.abs(positions) <= 0.5 * effective_length]
     assert EffectiveLength(CROWN, effective_length).drop(inner_positions, LENGTH) == pytest.approx(
@@ -43,7 +43,7 @@ def test_corners_equal_a_rounded_cylinder(positions: np.ndarray) -> None:
     "profile", [CROWN, FujiwaraKawase(2e-7, 1e-6), FujiwaraKawase(5e-7, 8e-6), JohnsGohar(1e-6, 4e-5)]
 )
 def test_corners_continue_the_profile(profile: Profile) -> None:
-    """The corner starts with the profile's slope: a corner parallel to the axis would be a loaded ledge."""
+    """The corner starts with the slope of the profile; a corner parallel to the axis would carry load."""
     effective_length = 0.9 * LENGTH
     x = np.linspace(0.4 * LENGTH, 0.5 * LENGTH, 20001)
     drop = EffectiveLength(profile, effective_length).drop(x, LENGTH)

@@ -78,7 +78,7 @@ def test_end_drop_of_johns_and_gohar(steel: Material) -> None:
     assert profile.half_width == pytest.approx(65e-6)
 
 
-def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> None:
+def test_johns_gohar_profile_equals_formula_with_rounded_constant(positions: np.ndarray) -> None:
     profile = JohnsGohar(amplitude=2e-7, half_width=1e-4)
     expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF_LENGTH) * (2 * positions / LENGTH) ** 2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-4, atol=1e-22)
@@ -116,7 +116,7 @@ def test_fujiwara_and_kawase_equals_paper(positions: np.ndarray) -> None:
     assert (profile.drop(positions, LENGTH)[end_distance > crown_length] == 0).all()
 
 
-def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
+def test_design_pressure_of_fujiwara_kawase_determines_amplitude(steel: Material) -> None:
     contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
     profile = FujiwaraKawase.for_pressure(PRESSURE, edge_drop=1e-6, k1=2.0, k2=0.5, **contact)
     assert profile == FujiwaraKawase(Lundberg.for_pressure(PRESSURE, **contact).amplitude, 1e-6, 2.0, 0.5)

@@ -36,7 +36,7 @@ def write_netcdf(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str 
     return path
 
 
-def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> None:
+def test_profile_from_csv_and_netcdf_equals_crown(tmp_path: Path, positions: np.ndarray) -> None:
     for path in (write_csv(tmp_path), write_netcdf(tmp_path), write_netcdf(tmp_path, name="height", sign=-1.0)):
         profile = Measured.from_file(path)
         np.testing.assert_allclose(
@@ -46,7 +46,7 @@ def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> N
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("brackets", ["[]", "()"])
-def test_csv_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
+def test_csv_file_may_have_several_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
     (left_bracket, right_bracket), path = brackets, tmp_path / "trace.txt"
     rows = [f"{row}{separator}{0.001 * row}{separator}note" for row in range(7)]
     path.write_text(
@@ -272,7 +272,7 @@ def test_outlier_check_precedes_the_filter() -> None:
         Measured(X, drop, cutoff=0.8e-3)
 
 
-def test_profile_from_line_and_map_of_instrument(tmp_path: Path, positions: np.ndarray) -> None:
+def test_profile_from_line_and_map_of_instrument_equals_crown(tmp_path: Path, positions: np.ndarray) -> None:
     """The heights are lower at end II, so that both directions differ."""
     line = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
     y = np.linspace(0.0, 0.3e-3, 16)

@@ -32,7 +32,7 @@ def test_x3p_surface_has_heights_of_file(tmp_path: Path) -> None:
     np.testing.assert_allclose(is_line.heights, HEIGHTS[:, 0])
 
 
-def test_x3p_profile_of_even_and_uneven_points(tmp_path: Path) -> None:
+def test_x3p_profile_contains_even_and_uneven_points(tmp_path: Path) -> None:
     x3pio.Profile.from_array(HEIGHTS[:, 0], x_scale=2e-6).save(tmp_path / "even.x3p")
     uneven_x = np.array([0.0, 1.0, 3.0, 4.0, 6.0]) * 1e-6
     points = np.stack([uneven_x, np.zeros(5), HEIGHTS[:, 0]], axis=1)

@@ -22,7 +22,9 @@ def package() -> ModuleType:
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("um", 1e-6), ("mm", 1e-3), ("nm", 1e-9)])
-def test_profilometer_map_in_various_units(package: ModuleType, tmp_path: Path, unit: str, metres: float) -> None:
+def test_profilometer_map_in_any_unit_equals_heights(
+    package: ModuleType, tmp_path: Path, unit: str, metres: float
+) -> None:
     """GWY files contain metres; the text of `to_matrix` contains the given unit."""
     sizes = (X.size * 2e-6 / metres, Y.size * 3e-6 / metres)
     topography = package.Topography(HEIGHTS / metres, sizes, unit=unit)

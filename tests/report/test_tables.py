@@ -79,7 +79,8 @@ def test_force_below_rounding_is_zero(case_result: xr.Dataset) -> None:
     # The text is 0 also for a prescribed force of zero.
     inputs_template = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
     assert summary(motion_result.assign_attrs(contactstudy_inputs=inputs_template % "0.0"))["force_x"].text == "0 N"
-    # Errors below the value and above rounding, a value above rounding, no other force, and a prescribed force.
+    # Results without rounding: an error below the value or above rounding, a value above rounding, no other force,
+    # a prescribed force.
     for exact_result in (
         motion_result.assign(force_x_error=1e-10),
         motion_result.assign(force_x_error=1e-3),
@@ -196,7 +197,7 @@ def test_stored_result_contains_case(singular_result: xr.Dataset, tmp_path) -> N
         solved_case(xr.Dataset())
 
 
-def test_citations_of_a_result(singular_result: xr.Dataset) -> None:
+def test_citations_depend_on_inputs_of_result(singular_result: xr.Dataset) -> None:
     cited_subjects = {subject for subject, _ in citations(singular_result).entries}
     assert {"free ends", "contact iteration", "stresses"} <= cited_subjects
     assert "stick and slip" not in cited_subjects
@@ -209,7 +210,7 @@ def test_citations_of_a_result(singular_result: xr.Dataset) -> None:
     assert not {"free ends", "stresses"} & cited_subjects
 
 
-def test_citations_of_a_study() -> None:
+def test_citations_depend_on_inputs_of_study() -> None:
     base = {"model": "mirror-factor", "profile": {"kind": "measured", "cutoff": 1e-4}}
     study = {"base": base, "sweep": {"body": ["half-space", "quarter-space"]}, "zip": [{"model": ["exact"]}]}
     cited_subjects = {
@@ -255,7 +256,7 @@ def test_summary_contains_edge_tension() -> None:
     assert "peak_edge_tension" not in summary(frictionless)
 
 
-def test_texts_of_intensity_material_and_body() -> None:
+def test_texts_of_intensity_material_and_body_have_units() -> None:
     law = xr.Dataset({"end_intensity_first": 4.5e6, "end_exponent_first": 0.5})
     assert summary(law)["end_intensity_first"].text == "0.1423 GPa mm^0.5"
     assert describe_material(STEEL) == "E = 210 GPa, Poisson's ratio 0.3"

@@ -31,8 +31,11 @@ def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: fl
     ("friction", "force_fraction", "max_error"),
     [(1.0, 0.95, 0.08), (0.7, 0.93, 0.08), (0.3, 0.14, 0.08), (0.5, 0.05, 0.15)],
 )
-def test_stress_maximum_at_border_near_rim(friction: float, force_fraction: float, max_error: float) -> None:
-    """The cusp lies at most two cells inside the rim; its stress is between samples, or hidden in a narrow zone."""
+def test_stress_maximum_at_border_near_rim_is_accurate(
+    friction: float, force_fraction: float, max_error: float
+) -> None:
+    """The cusp lies at most two cells inside the rim; its stress is between samples or in a zone narrower than a
+    cell."""
     check_stress_maximum(friction, force_fraction, max_error)
 
 
@@ -43,7 +46,7 @@ def check_stress_maximum(friction: float, force_fraction: float, max_error: floa
     return comparison.result
 
 
-def test_stress_maximum_at_border_below_rigid_roller() -> None:
+def test_stress_maximum_below_rigid_roller_equals_finer_rows() -> None:
     """Under unlike bodies the pressure strains the sticking cells; cells four times finer along y are the reference."""
     roller = cs.Roller(radius=RADIUS, length=0.3e-3, profile=cs.profiles.Ellipsoid(crown_radius=20e-3), ends="none")
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.4)
@@ -54,7 +57,7 @@ def test_stress_maximum_at_border_below_rigid_roller() -> None:
     assert abs(comparison.change) < 0.01
 
 
-def test_stress_maximum_in_narrow_slip_strip() -> None:
+def test_stress_maximum_in_narrow_slip_strip_equals_finer_cells() -> None:
     """On 6 columns the border is at most two cells off the rim along x and y; the reference is on finer cells."""
     profile = cs.profiles.Ellipsoid(crown_radius=1.5e-3)
     roller = cs.Roller(radius=RADIUS, length=0.2e-3, profile=profile, material=STEEL, ends="none")

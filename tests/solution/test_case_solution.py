@@ -102,7 +102,7 @@ def test_result_survives_netcdf(result, tmp_path) -> None:
             assert np.array_equal(stored_result[name], result[name])
 
 
-def test_stresses_at_given_positions(result) -> None:
+def test_stresses_have_given_positions_and_zero_end_stress(result) -> None:
     assert result["von_mises"].dims == ("x_field", "y_field", "z")
     assert result["x_field"].values.tolist() == [0.0, 0.3e-3]
     assert abs(result["sigma_xx"].values[0, 0, 1]) < 1e-5 * CASE.hertz_max_pressure  # the residual on the free end

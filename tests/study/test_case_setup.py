@@ -101,7 +101,7 @@ def test_impossible_parameters_raise(changes, message):
         build_setup(BASE | changes)
 
 
-def test_lundberg_profile_from_design_pressure():
+def test_amplitude_of_lundberg_profile_follows_from_design_pressure():
     table = {"kind": "lundberg", "design_pressure": 1.5e9}
     case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
@@ -140,6 +140,6 @@ def test_identity_contains_default_accuracy():
     assert identity_value("profile", tapered | {"name": "ours"}) == tapered
 
 
-def test_shift_motion_from_parameters():
+def test_motion_parameters_make_shift():
     values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
     assert build_motion(values) == Shift(y=1e-6)

@@ -40,7 +40,7 @@ def build_case(edge: object, **changes: object) -> Case:
 
 
 @pytest.mark.parametrize("kind", PROFILES)
-def test_study_allows_the_edges_of_a_case(kind: str) -> None:
+def test_study_accepts_body_edges_of_case_only(kind: str) -> None:
     edge = EXAMPLES[kind]
     if isinstance(edge, profiles.Cylinder | profiles.Chamfer):
         assert build_case(edge).body_edge == edge

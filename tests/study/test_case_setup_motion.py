@@ -52,7 +52,7 @@ def rolling_study(**changes: Any) -> Study:
         ({"motion": "rolling", "rolling_model": "fastsim"}, Rolling(model="fastsim")),
     ],
 )
-def test_motion_from_parameters(parameters: dict[str, Any], expected: object) -> None:
+def test_parameters_determine_motion(parameters: dict[str, Any], expected: object) -> None:
     assert build_setup(BASE | {"e_over_a": 0.0} | parameters).case.motion == expected
 
 

@@ -29,7 +29,7 @@ def make_resampling(source, borders, fill):
 
 @st.composite
 def draw_edges(draw):
-    """Edges of cells of any widths from 0 on."""
+    """Random edges of cells; the first edge is 0."""
     widths = draw(st.lists(st.floats(0.01, 2.0), min_size=1, max_size=12))
     return np.concatenate([[0.0], np.cumsum(widths)])
 
@@ -133,7 +133,7 @@ def test_refined_columns_share_common_axis(tmp_path):
 @given(draw_edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
 @example(np.array([0.0, 1.29, 1.71]), [1.5, 1.625])  # two points in one cell, one at its centre
 @example(np.array([0.0, 1.0]), [0.23, 0.69])  # the first cell begins at the end but for rounding
-def test_stress_points_become_centres_of(source, points):
+def test_stress_points_are_centres_of_cells(source, points):
     points = np.unique(np.round(points, 3))
     cells = centre_cells_on(source, points)
     assert np.diff(cells).min() > 0
@@ -142,12 +142,12 @@ def test_stress_points_become_centres_of(source, points):
         assert np.abs(centres_of(cells) - point).min() < 1e-9
 
 
-def test_cells_between_stress_points():
+def test_cells_have_edges_between_stress_points():
     cells = split_cells(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5, 2.0]))
     assert cells.tolist() == [0.0, 0.25, 1.0, 3.0]
 
 
-def test_common_edges_of_two_cases():
+def test_common_edges_combine_edges_of_two_cases():
     first_edges, second_edges = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
     assert common_columns([first_edges, second_edges]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]
 

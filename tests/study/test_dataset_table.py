@@ -111,7 +111,7 @@ def test_study_from_opened_dataset_equals_study(study: Study, tmp_path) -> None:
     assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
 
 
-def test_study_from_selection_of_dataset(tmp_path) -> None:
+def test_study_from_selection_of_dataset_has_selected_values(tmp_path) -> None:
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
         zip={

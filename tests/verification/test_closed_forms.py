@@ -39,7 +39,7 @@ def compute_gradient(field: Field, points: np.ndarray, step: float = 1e-2) -> np
 
 
 @pytest.mark.parametrize("name", FIELDS)
-def test_equilibrium_and_compatibility(name: str) -> None:
+def test_stresses_satisfy_equilibrium_and_compatibility(name: str) -> None:
     """The body force is zero, the mean stress is harmonic, and Beltrami's equations hold."""
     field = FIELDS[name]
     points = np.random.default_rng(1).uniform(-2, 2, (3, 6))
@@ -70,7 +70,7 @@ def test_equilibrium_and_compatibility(name: str) -> None:
     assert compute_laplacian(*points) + hessian / (1 + NU) == pytest.approx(0, abs=2e-4)
 
 
-def test_surface_stress_of_circle() -> None:
+def test_surface_stress_of_circle_equals_closed_form() -> None:
     r = np.array([0.0, 0.3, 0.6, 0.9, 1.2, 2.0])
     stress = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU, 0.25)
     pressure = np.sqrt(np.clip(1 - r**2, 0, None))
@@ -88,7 +88,7 @@ def test_surface_stress_of_circle() -> None:
         assert shear[name] - circle_stress[name] == pytest.approx(value, abs=1e-9), name
 
 
-def test_stress_of_circle_on_axis_and_at_distance() -> None:
+def test_stress_of_circle_on_axis_and_at_distance_equals_closed_forms() -> None:
     z = np.linspace(0, 5, 26)
     zz, rr = ref.hertz_circle_axis(z, 2.0, 3.0, NU)
     stress = ref.hertz_circle(0.0, 0.0, z, 2.0, 3.0, NU)
@@ -134,7 +134,7 @@ def test_hertz_contact_equals_closed_form() -> None:
     assert 0.5 * np.pi * a * p0 == pytest.approx(2e5)
 
 
-def test_surface_stress_of_strip() -> None:
+def test_surface_stress_of_strip_equals_closed_form() -> None:
     y = np.array([-3.0, -1.2, -0.8, 0.0, 0.5, 0.9, 1.5])
     pressure = np.sqrt(np.clip(1 - y**2, 0, None))
     stress = ref.hertz_strip(y, 0.0, 1.0, 1.0, NU, 0.2)
@@ -156,7 +156,7 @@ def test_surface_stress_of_strip() -> None:
         (0.3, None, None, None, 0.667),
     ],
 )
-def test_largest_von_mises_stress_of_strip(
+def test_largest_von_mises_stress_of_strip_equals_published_values(
     friction: float, maximum: float | None, y_position: float, depth: float, surface_maximum: float
 ) -> None:
     """Published largest von Mises stresses of a sliding line contact, Poisson's ratio 0.3."""
@@ -170,7 +170,7 @@ def test_largest_von_mises_stress_of_strip(
         assert (abs(y[i, 0]), z[0, 40 + j]) == pytest.approx((y_position, depth), abs=0.012)
 
 
-def test_largest_orthogonal_shear_of_strip() -> None:
+def test_largest_orthogonal_shear_of_strip_equals_published_value() -> None:
     y, z = np.linspace(-1.5, 1.5, 601)[:, None], np.linspace(0.2, 0.9, 141)[None, :]
     shear = ref.hertz_strip(y, z, 1.0, 1.0, NU)["tau_yz"]
     i, j = np.unravel_index(np.abs(shear).argmax(), shear.shape)

@@ -63,7 +63,7 @@ def compute_column_peaks(profile, **options: object) -> xr.DataArray:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("index", [1, 2])
-def test_pressure_of_coarse_worn_profile_on_finer_columns(refined_wear, coarse_wear, index: int) -> None:
+def test_pressure_of_coarse_worn_profile_on_finer_columns_equals_wear(refined_wear, coarse_wear, index: int) -> None:
     """Columns of 5 um do not resolve the last micrometres; the profile continues to the end."""
     peaks = compute_column_peaks(worn_profile(make_case(), coarse_wear, float(refined_wear["distance"][index])))
     worn_peaks = refined_wear["pressure"].isel(distance=index).max("y") / 1.5e9
@@ -75,7 +75,7 @@ def test_pressure_of_coarse_worn_profile_on_finer_columns(refined_wear, coarse_w
 
 
 @pytest.mark.slow
-def test_pressure_of_worn_profile_on_halved_columns(refined_wear) -> None:
+def test_pressure_of_worn_profile_on_halved_columns_equals_wear(refined_wear) -> None:
     """Halved columns have the pressure of the whole columns; the pressure at the end is not singular."""
     edges = np.append(refined_wear["x_bounds"].values[:, 0], refined_wear["x_bounds"].values[-1, 1])
     halved_edges = np.sort(np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])]))
@@ -142,7 +142,7 @@ def test_worn_overhanging_roller_has_no_ridge() -> None:
 
 
 @pytest.mark.parametrize("border", [0.02e-3, 0.04e-3, 0.06e-3])
-def test_worn_profile_at_border_of_worn_columns(border: float) -> None:
+def test_worn_profile_at_border_of_worn_columns_equals_parabola(border: float) -> None:
     """The worn depth is a parabola with its border within a column; harmonic-mean slopes would deviate by 5 nm."""
     radius = 0.02
     case = make_case(FullCrown(crown_radius=radius), margin=0.0)
@@ -169,7 +169,7 @@ def test_partly_worn_edge_radius_has_no_ridge() -> None:
     assert worn_peak < float(worn_result.peak_pressure) < 0.8 * unworn_peak
 
 
-def test_worn_profile_of_single_distance(uniform_wear) -> None:
+def test_worn_profile_of_single_distance_equals_selected_distance(uniform_wear) -> None:
     case = make_case()
     x = np.linspace(-0.5, 0.5, 41) * LENGTH
     selected_profile, single_profile = (

@@ -67,7 +67,10 @@ CONTACT_SPECS = {
 
 @pytest.mark.parametrize("spec", CONTACT_SPECS.values(), ids=CONTACT_SPECS)
 def test_results_scale_with_units(spec: ContactSpec) -> None:
-    baseline, variant = contact_of(spec.shape(), Settings()), contact_of(spec.shape(LENGTH, PRESSURE), Settings())
+    baseline, variant = (
+        contact_of(spec.make_shape(), Settings()),
+        contact_of(spec.make_shape(LENGTH, PRESSURE), Settings()),
+    )
     assert baseline.converged
     assert (baseline.converged, baseline.iterations) == (variant.converged, variant.iterations)
     units = {"pressure": PRESSURE, "gap": LENGTH, "displacement": LENGTH, "approach": LENGTH, "tilt": 1.0}
@@ -88,20 +91,20 @@ def test_symmetric_contacts_have_symmetric_pressures(has_free_ends: bool) -> Non
     gap = 0.05 * ((grid.x[:, None] - mid_x) ** 2 + grid.y**2)
     material = Material(0.91, 0.3)
     body: Body = FiniteLengthSpace(material=material, length=3.0) if has_free_ends else HalfSpace(material=material)
-    make_shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
-    pressure = contact_of(make_shape, Settings()).pressure
+    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
+    pressure = contact_of(shape, Settings()).pressure
     assert (pressure == pressure[::-1]).all()
     assert (pressure == pressure[:, ::-1]).all()
-    assert make_shape.reflections() == [0, 1]
+    assert shape.reflections() == [0, 1]
     unsymmetric_shapes = (
-        (make_shape._replace(coupled_friction=0.3), [0]),
-        (make_shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
-        (make_shape._replace(prescribed=PrescribedLoad(0.05, mid_x + 1e-6)), [1]),
-        (make_shape._replace(body=QuarterSpace(material=material)), [1]),
-        (make_shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
+        (shape._replace(coupled_friction=0.3), [0]),
+        (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
+        (shape._replace(prescribed=PrescribedLoad(0.05, mid_x + 1e-6)), [1]),
+        (shape._replace(body=QuarterSpace(material=material)), [1]),
+        (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
     )
-    for variant, axes in unsymmetric_shapes:
-        assert variant.reflections() == axes
+    for unsymmetric_shape, axes in unsymmetric_shapes:
+        assert unsymmetric_shape.reflections() == axes
 
 
 def compute_rigid_approach(contact: Contact) -> Any:
@@ -113,7 +116,7 @@ def compute_rigid_approach(contact: Contact) -> Any:
 
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
 def test_gap_follows_from_displacement_and_shape(name: str) -> None:
-    computed = contact_of(CONTACT_SPECS[name].shape(), Settings())
+    computed = contact_of(CONTACT_SPECS[name].make_shape(), Settings())
     is_under_shape = np.isfinite(computed.gap)
     expected = computed.shape.gap.values + computed.displacement - compute_rigid_approach(computed)
     assert computed.gap[is_under_shape] == pytest.approx(expected[is_under_shape], abs=1e-9)
@@ -140,11 +143,11 @@ MAX_APPLICATIONS = {
 
 @pytest.mark.parametrize("name", MAX_APPLICATIONS)
 def test_operator_applications_are_few(name: str) -> None:
-    assert contact_of(CONTACT_SPECS[name].shape(), Settings()).iterations <= MAX_APPLICATIONS[name]
+    assert contact_of(CONTACT_SPECS[name].make_shape(), Settings()).iterations <= MAX_APPLICATIONS[name]
 
 
 def test_warning_refers_to_caller() -> None:
-    computed = contact_of(CONTACT_SPECS["load"].shape(), Settings(1e-6, 3))
+    computed = contact_of(CONTACT_SPECS["load"].make_shape(), Settings(1e-6, 3))
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as message:
         computed.warn_unless_converged()
     assert message[0].filename == __file__

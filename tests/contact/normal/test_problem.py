@@ -43,7 +43,7 @@ class CountingOperator:
         return self.compute_displacement.precondition(gap)
 
     @property
-    def coarse_problem(self) -> ContactOperator:
+    def coarse(self) -> ContactOperator:
         return self.compute_displacement.coarse
 
 

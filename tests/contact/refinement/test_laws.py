@@ -103,7 +103,7 @@ def compute_wedge_slope(angle: float, s: float) -> float:
         return np.array(wedge_equations).T
 
     loaded_face, free_face = compute_fundamental_solutions(0.0), compute_fundamental_solutions(angle)
-    # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
+    # Stresses divided by r**(s - 1): s (s + 1) F across the radius, shear -s F'.
     conditions = np.array([s * (s + 1) * loaded_face[0], loaded_face[1], free_face[0], free_face[1]])
     _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
     # Displacement across r**s: solutions with s + 1 have 2 G u = -dF / r, those with s - 1 also a term of the

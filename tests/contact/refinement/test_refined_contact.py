@@ -268,7 +268,7 @@ def test_window_fits_contact(name: str) -> None:
     assert 1.05 < grid.y_range[1] / contact_half_width < 1.1 * 2 ** (1 / 6) * 1.15
 
 
-def test_roller_columns_of_shifted_grid() -> None:
+def test_roller_columns_have_edges_of_roller() -> None:
     grid = Grid.between(np.array([-3.0, -2.0, -1.0, 1.0, 1.5, 2.0, 4.0]), (0.0, 1.0), 2)
     assert _roller_columns(grid, np.array([1.0, 1.5, 2.0])) == slice(3, 5)
     assert _roller_columns(grid, np.array([-2.0 + 1e-12, -1.0])) == slice(1, 2)
@@ -283,7 +283,7 @@ class WavyCrown(profiles.Shape):
     wavelength: float
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
-        waves = self.amplitude * (1 - np.cos(2 * np.pi * np.asarray(x) / self.wave))
+        waves = self.amplitude * (1 - np.cos(2 * np.pi * np.asarray(x) / self.wavelength))
         return np.asarray(x) ** 2 / (2 * self.crown_radius) + waves
 
 

@@ -181,7 +181,7 @@ def test_single_loaded_sharp_end_has_law() -> None:
 
 @pytest.mark.parametrize(("material", "distance"), [(STEEL, 1e-3), pytest.param(None, 1e-4, marks=pytest.mark.slow)])
 def test_law_of_nearly_flush_end_does_not_depend_on_accuracy(material: Material | None, distance: float) -> None:
-    """The pressure hardly grows on columns of several times the remaining face."""
+    """On columns several times wider than the face beyond the roller, the end pressure hardly increases."""
     body = FiniteLengthSpace(length=SHORT + 2 * distance * HALF_WIDTH, material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=SHORT, material=material), max_pressure=PRESSURE)
     results = [solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.05, 0.01, 0.005)]

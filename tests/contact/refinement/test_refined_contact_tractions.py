@@ -249,7 +249,7 @@ def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.slow
-def test_window_of_a_wheel_on_a_rail() -> None:
+def test_window_contains_contact_of_wheel_and_rail() -> None:
     """The window contains the contact with the margin of rolling, although it exceeds the first window."""
     steel = Material(206e9, 0.28)
     wheel = Roller(radius=0.46, length=30e-3, profile=Ellipsoid(crown_radius=0.3), material=steel)

@@ -157,7 +157,7 @@ def test_half_of_cells_slip_in_any_order() -> None:
         assert excess[computed].min() > excess[~computed].max()
 
 
-def test_first_fraction_of_cells() -> None:
+def test_select_first_keeps_first_fraction_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
     assert _select_first(cells, 1.0) is cells
     for fraction, cell_count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):

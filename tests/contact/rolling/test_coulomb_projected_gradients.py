@@ -83,7 +83,9 @@ def make_graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, 
 
 @pytest.mark.parametrize(("unit", "pressure"), [(1e-6, 1.0), (1.0, 1.0), (1.0, 1e-9), (1e3, 1e9)])
 @pytest.mark.parametrize("forces", [False, True])
-def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
+def test_descent_on_graded_cells_equals_coulomb_solution_in_any_unit(
+    unit: float, pressure: float, *, forces: bool
+) -> None:
     request = make_graded_problem(8, unit=unit, pressure=pressure, forces=forces)
     applications: list[int] = []
 

@@ -36,7 +36,7 @@ def test_fastsim_matches_published_spin_case() -> None:
     assert float(np.abs(traction_size - bound).where(is_slipping, 0.0).max()) < 1e-9 * float(bound.max())
 
 
-def test_creep_coefficients_between_and_beyond_table() -> None:
+def test_creep_coefficients_are_interpolated_and_extrapolated() -> None:
     assert creep_coefficients(0.3, 0.5) == pytest.approx([4.80, 2.81, 0.889])
     assert (np.diff([creep_coefficients(ratio, 0.3) for ratio in (0.5, 0.75, 1.1, 3.0)], axis=0) > 0).all()
     assert creep_coefficients(0.05, 0.3)[:2] == pytest.approx([np.pi**2 / 2.8, np.pi**2 / 4])

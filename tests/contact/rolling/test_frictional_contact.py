@@ -312,13 +312,13 @@ def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
             float(graded_result[f"force_{axis}"])
         )
     scale = FRICTION * LOAD
-    for name, scale_size in {
+    for name, load_scale in {
         "force_x": scale,
         "force_y": scale,
         "moment_z": scale,
         "friction_work": 0.02 * scale,
     }.items():
-        assert float(graded_result[name]) == pytest.approx(float(uniform_result[name]), abs=0.01 * scale_size)
+        assert float(graded_result[name]) == pytest.approx(float(uniform_result[name]), abs=0.01 * load_scale)
 
 
 def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:

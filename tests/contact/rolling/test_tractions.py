@@ -268,7 +268,7 @@ def test_slipping_leading_cell_has_slip() -> None:
 
 
 @pytest.mark.parametrize("columns", [1, 4])
-def test_contact_with_few_columns_and_many_rows(columns: int) -> None:
+def test_contact_with_few_columns_and_many_rows_converges(columns: int) -> None:
     """The coarser cells of a body between free ends have as few as one column."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
