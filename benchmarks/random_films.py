@@ -44,21 +44,21 @@ def draw_profile(rng: Random, amplitude: float, half_width: float, length: float
     depth = 4 * drop
     if kind == "crown":
         return cs.profiles.FullCrown(length**2 / (8 * depth))
-    straight = rng.uniform(0.3, 0.8) * length
-    return cs.profiles.PartialCrown(straight, (length - straight) ** 2 / (8 * depth))
+    straight_length = rng.uniform(0.3, 0.8) * length
+    return cs.profiles.PartialCrown(straight_length, (length - straight_length) ** 2 / (8 * depth))
 
 
 def draw_case(rng: Random) -> cs.Case:
     """A case with speed and lubricant."""
     half_width = draw_magnitude(rng, 30e-6, 90e-6)
-    rigid = rng.random() < 0.5
-    modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
+    is_rigid = rng.random() < 0.5
+    modulus = STEEL.plane_strain_modulus / (1 if is_rigid else 2)
     pressure = half_width * modulus / (2 * RADIUS)
     length = half_width * draw_magnitude(rng, 8.0, 250.0)
     profile = draw_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
     distance = rng.choice((0.0, 0.0, rng.uniform(0.0, 5.0))) * half_width
     tilt = rng.choice((0.0, 0.0, rng.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
-    roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
+    roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if is_rigid else STEEL)
     case = cs.Case(
         body=cs.FiniteLengthSpace(length=length + 2 * distance, material=STEEL),
         roller=roller,
@@ -137,7 +137,7 @@ def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]]
 
 def report_errors(seeds: range, accuracy: float) -> int:
     """Print the films whose stated errors cover the change to finer cells, and the medians of error over change."""
-    compared = []
+    compared_rows = []
     for seed in seeds:
         try:
             errors = compare_errors(seed, accuracy)
@@ -145,15 +145,18 @@ def report_errors(seeds: range, accuracy: float) -> int:
             print(f"seed {seed}: {error}", flush=True)
             continue
         if errors is not None:
-            compared.append(errors)
-            texts = (f"{name} {stated:.2g} m against {change:.2g}" for name, (stated, change) in errors.items())
+            compared_rows.append(errors)
+            texts = (
+                f"{name} {stated_error:.2g} m against {change:.2g}" for name, (stated_error, change) in errors.items()
+            )
             print(f"seed {seed}: {', '.join(texts)}", flush=True)
     for name in FILM_NAMES:
-        stated_and_changes = [errors[name] for errors in compared]
-        covered = sum(change <= stated for stated, change in stated_and_changes)
-        median = np.median([stated / max(change, 1e-12) for stated, change in stated_and_changes])
+        stated_and_changes = [errors[name] for errors in compared_rows]
+        covered_count = sum(change <= stated_error for stated_error, change in stated_and_changes)
+        median = np.median([stated_error / max(change, 1e-12) for stated_error, change in stated_and_changes])
         print(
-            f"{name}: {covered} of {len(stated_and_changes)} covered, median of stated error over change {median:.1f}"
+            f"{name}: {covered_count} of {len(stated_and_changes)} covered, median of stated error over change "
+            f"{median:.1f}"
         )
     return 0
 
@@ -170,16 +173,18 @@ def main() -> int:
     if options.finer:
         return report_errors(range(options.first, options.first + options.cases), options.accuracy)
     kinds: Counter[str] = Counter()
-    failed = []
+    failed_rows = []
     for seed in range(options.first, options.first + options.cases):
         kind, text = solve_seed(seed, options.accuracy)
         kinds[kind] += 1
-        failed += [seed] if kind == "failed" else []
+        failed_rows += [seed] if kind == "failed" else []
         print(f"seed {seed}: {kind}: {text}", flush=True)
     solved_count = options.cases - kinds["refused"]
     print(", ".join(f"{count} {kind}" for kind, count in kinds.most_common()))
-    print(f"converged: {100 * (solved_count - kinds['failed']) / max(solved_count, 1):.1f} %; failed seeds: {failed}")
-    return int(bool(failed))
+    print(
+        f"converged: {100 * (solved_count - kinds['failed']) / max(solved_count, 1):.1f} %; failed seeds: {failed_rows}"
+    )
+    return int(bool(failed_rows))
 
 
 if __name__ == "__main__":

@@ -125,22 +125,23 @@ def main(arguments: list[str] | None = None) -> int:
             f"friction {parameters[0]}, force {parameters[1]}": partial(compare_with_carter, *parameters)
             for parameters in parameter_pairs
         }
-    compared = []
+    comparison_results = []
     for name, compare in comparisons.items():
         comparison = compare()
         if comparison is None:
             print(f"{name}: the pressure is singular", flush=True)
             continue
-        compared.append(comparison)
+        comparison_results.append(comparison)
         region = "top" if comparison.result.peak_von_mises_z == 0 else "below"
         print(f"{name}: {comparison.change:+.2%}, stated {comparison.error:.2%}, {region}", flush=True)
-    changes, errors = np.array([(abs(comparison.change), comparison.error) for comparison in compared]).T
+    changes, errors = np.array([(abs(comparison.change), comparison.error) for comparison in comparison_results]).T
     covered_count = int((changes <= errors).sum())
     print(
-        f"{len(compared)} cases, {covered_count} stated errors hold; difference: median {np.median(changes):.2%}, "
-        f"largest {changes.max():.2%}; stated error: median {np.median(errors):.2%}"
+        f"{len(comparison_results)} cases, {covered_count} stated errors hold; "
+        f"difference: median {np.median(changes):.2%}, largest {changes.max():.2%}; "
+        f"stated error: median {np.median(errors):.2%}"
     )
-    return int(covered_count < len(compared))
+    return int(covered_count < len(comparison_results))
 
 
 if __name__ == "__main__":

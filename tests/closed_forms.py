@@ -22,8 +22,8 @@ class SlidingLine(NamedTuple):
 
     def pressure(self, y: ArrayLike) -> NDArray[np.float64]:
         """Pressure at `y`, Pa."""
-        scaled = np.clip((np.asarray(y, dtype=float) - self.centre) / self.half_width, -1.0, 1.0)
-        shape = (1 + scaled) ** (0.5 + self.exponent) * (1 - scaled) ** (0.5 - self.exponent)
+        scaled_y = np.clip((np.asarray(y, dtype=float) - self.centre) / self.half_width, -1.0, 1.0)
+        shape = (1 + scaled_y) ** (0.5 + self.exponent) * (1 - scaled_y) ** (0.5 - self.exponent)
         return np.asarray(self.peak_scale * self.half_width * shape)
 
 
@@ -97,9 +97,9 @@ def compute_largest_von_mises_under_carter(friction: float, stick_ratio: float, 
     """Largest von Mises stress under Carter's traction over the largest pressure, in plane strain."""
     y = np.append(np.linspace(-1.1, 1.1, 441), 1 - 2 * stick_ratio)
     y, z = (axis.ravel() for axis in np.meshgrid(y, np.linspace(0.0, 1.0, 51)))
-    pressure, sliding = compute_elliptic_line_stresses(y, z)
-    sticking = compute_elliptic_line_stresses((y - 1 + stick_ratio) / stick_ratio, z / stick_ratio)[1]
-    yy, zz, yz = pressure + friction * (sliding - stick_ratio * sticking)
+    pressure_stress, sliding_stress = compute_elliptic_line_stresses(y, z)
+    sticking_stress = compute_elliptic_line_stresses((y - 1 + stick_ratio) / stick_ratio, z / stick_ratio)[1]
+    yy, zz, yz = pressure_stress + friction * (sliding_stress - stick_ratio * sticking_stress)
     xx = poisson * (yy + zz)
     squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * yz**2
     return float(np.sqrt(squares.max()))

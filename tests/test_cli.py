@@ -182,9 +182,9 @@ def test_help_avoids_heavy_imports():
 def test_closed_output_pipe_returns_code_141(study_file, tmp_path):
     """Like `contactstudy ... | head -1`: there is no error text, and the command writes all files."""
     for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):
-        read, write = os.pipe()
-        os.close(read)
-        with os.fdopen(write, "w") as pipe_file:
+        read_end, write_end = os.pipe()
+        os.close(read_end)
+        with os.fdopen(write_end, "w") as pipe_file:
             process = subprocess.run(
                 [sys.executable, "-m", "tests.study.fake_run", *arguments],
                 cwd=tmp_path,

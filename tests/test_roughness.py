@@ -180,8 +180,8 @@ def test_instrument_map_is_placed_and_form_removed(tmp_path: Path) -> None:
     height_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_form=True)
     expected = np.sin(2 * np.pi * GRID.x / 0.1e-3)[:, None] * np.cos(2 * np.pi * (GRID.y - corner[1]) / 0.2e-3)
     np.testing.assert_allclose(height_map, 1e-7 * expected, atol=3e-9)
-    without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
-    assert float(without_slope.max() - without_slope.min()) > 10 * float(height_map.max() - height_map.min())
+    map_without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
+    assert float(map_without_slope.max() - map_without_slope.min()) > 10 * float(height_map.max() - height_map.min())
     restored_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
     np.testing.assert_allclose(restored_map.values[::-1], height_map.values, atol=3e-9)
 

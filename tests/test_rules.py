@@ -91,8 +91,10 @@ def list_bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
 
 def list_fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     """Names of the fields of a dataclass, inherited ones included."""
-    annotated = [entry for entry in node.body if isinstance(entry, ast.AnnAssign)]
-    names = {ast.unparse(entry.target) for entry in annotated if "ClassVar" not in ast.unparse(entry.annotation)}
+    annotated_entries = [entry for entry in node.body if isinstance(entry, ast.AnnAssign)]
+    names = {
+        ast.unparse(entry.target) for entry in annotated_entries if "ClassVar" not in ast.unparse(entry.annotation)
+    }
     return names.union(
         *(list_fields(classes[name], classes) for base in node.bases if (name := ast.unparse(base)) in classes)
     )
@@ -136,14 +138,14 @@ def find_misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
     """Files `room/test_MODULE.py`, `room/test_MODULE_TOPIC.py` or `MODULE/test_TOPIC.py` without such a module."""
     stems = {name.removesuffix(".py") for name in modules}
     rooms = {name.split("/")[0] for name in stems}
-    misplaced = []
+    misplaced_files = []
     for test in tests:
         room, _, name = test.removesuffix(".py").rpartition("/")
         words = name.split("_")[1:]
         candidates = {f"{room}/{'_'.join(words[:count])}" for count in range(1, len(words) + 1)} | {room}
         if room.split("/")[0] in rooms and not candidates & stems:
-            misplaced.append(test)
-    return misplaced
+            misplaced_files.append(test)
+    return misplaced_files
 
 
 def test_package_follows_rules() -> None:

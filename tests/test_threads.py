@@ -28,27 +28,27 @@ CASE = cs.Case(
     friction=0.2,
     motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0),
 )
-ROLLING = cs.Case(
+ROLLING_CASE = cs.Case(
     body=cs.QuarterSpace(material=STEEL),
     roller=cs.Roller(radius=5e-3, length=0.2e-3),
     max_pressure=1e9,
     friction=0.2,
     motion=cs.Rolling(lateral_creepage=1e-3),
 )
-LUBRICATED = replace(
+LUBRICATED_CASE = replace(
     CASE,
     max_pressure=4e8,
     lubricant=cs.Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="roelands"),
     motion=cs.Sliding(body_speed=1.0, roller_speed=1.0),
 )
 FILM_CELLS = cs.film.FilmResolution(finest=1.1, finest_share=0.24, inner=0.32, growth=0.2, columns=0.24)
-CROWNED = cs.Case(
+CROWNED_CASE = cs.Case(
     body=cs.HalfSpace(material=STEEL),
     roller=cs.Roller(radius=5e-3, length=0.3e-3, profile=cs.profiles.FullCrown(crown_radius=5e-3)),
     load=20.0,
 )
 GRID = cs.choose_grid(CASE, cells_x=8, cells_y=8)
-ROLLING_GRID = cs.choose_grid(ROLLING, cells_x=6, cells_y=8)
+ROLLING_GRID = cs.choose_grid(ROLLING_CASE, cells_x=6, cells_y=8)
 POINTS = {"x": [0.0, 1e-4], "y": [0.0, 2e-5], "z": [0.0, 1e-5, 5e-5]}
 PASSAGE_POINTS = {"x": np.linspace(0.0, 0.5e-3, 3), "y": np.linspace(-2e-4, 2e-4, 9), "z": [1e-5, 3e-5, 6e-5]}
 APPROACHES, TILTS = 1e-6 * np.geomspace(0.5, 2.0, 5), np.linspace(-2e-3, 2e-3, 5)
@@ -115,14 +115,14 @@ def make_calculations() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
     pressure = solution["pressure"]
     gap = solution["initial_gap"]
     passage = cs.solve(CASE, GRID, **PASSAGE_POINTS)
-    film = cs.solve_film(LUBRICATED, accuracy=0.2, resolution=FILM_CELLS)
+    film = cs.solve_film(LUBRICATED_CASE, accuracy=0.2, resolution=FILM_CELLS)
     elastic_plastic = cs.plasticity.ElasticPlastic(yield_stress=4e8)
     limits = cs.fatigue.FatigueLimits(torsion=4e8, bending=6e8)
     thermal = cs.heat.ThermalProperties(conductivity=50.0, density=7850.0, specific_heat=460.0)
     return {
         "solve": lambda: cs.solve(CASE, GRID, **POINTS),
         "solve_refined": lambda: cs.solve(CASE, **POINTS),
-        "solve_rolling": lambda: cs.solve(ROLLING, ROLLING_GRID, stresses=False),
+        "solve_rolling": lambda: cs.solve(ROLLING_CASE, ROLLING_GRID, stresses=False),
         "solve_contact": lambda: cs.solve_contact(BODY, gap, load=10.0),
         "stress_field": lambda: cs.stress_field(BODY, pressure, friction=0.2, **POINTS),
         "displacement_field": lambda: cs.displacement_field(BODY, pressure, friction=0.2, **POINTS),
@@ -130,9 +130,9 @@ def make_calculations() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
         "equivalent_loads": lambda: cs.equivalent_loads(BODY, pressure, 0.2),
         "roller_stress": lambda: cs.roller_stress(CASE, pressure, **POINTS),
         "wear_in": lambda: cs.wear.wear_in(CASE, 1e-17, distance=1e3, grid=GRID),
-        "solve_film": lambda: cs.solve_film(LUBRICATED, accuracy=0.2, resolution=FILM_CELLS),
-        "film_traction": lambda: cs.film.film_traction(LUBRICATED, film, [0.01, 0.1]),
-        "contact_law": lambda: cs.bearing.contact_law(CROWNED, TILTS, APPROACHES, accuracy=0.1).table,
+        "solve_film": lambda: cs.solve_film(LUBRICATED_CASE, accuracy=0.2, resolution=FILM_CELLS),
+        "film_traction": lambda: cs.film.film_traction(LUBRICATED_CASE, film, [0.01, 0.1]),
+        "contact_law": lambda: cs.bearing.contact_law(CROWNED_CASE, TILTS, APPROACHES, accuracy=0.1).table,
         "slice_model": lambda: cs.bearing.slice_model(CASE),
         "lamina_factors": lambda: cs.bearing.lamina_factors(solution),
         "shakedown": lambda: cs.fatigue.shakedown(passage),

@@ -12,19 +12,19 @@ from benchmarks.faults.table import Row, write_table
 
 def run_trials(kills: int) -> list[Row]:
     """Table of the trials of every fault."""
-    undisturbed = studies.compute_undisturbed_values()
+    undisturbed_dataset = studies.compute_undisturbed_values()
     trials = (
-        lambda: scenarios.kill_runs(undisturbed, kills - kills // 4),
-        lambda: scenarios.kill_runs(undisturbed, kills // 4, workers=2),
-        lambda: scenarios.fill_disks(undisturbed, max(2, kills // 10)),
-        lambda: scenarios.kill_schedulers(undisturbed, max(1, kills // 33)),
-        lambda: scenarios.damage_batches(undisturbed, max(7, kills * 7 // 20)),
-        lambda: scenarios.damage_records(undisturbed, max(4, kills // 5)),
-        lambda: scenarios.start_second_runs(undisturbed, max(2, kills // 12)),
-        lambda: hosts.run_on_two_hosts(undisturbed, max(4, kills // 12)),
-        lambda: scenarios.run_simultaneously(undisturbed, max(2, kills // 12)),
-        lambda: scenarios.shift_clock(undisturbed, max(2, kills // 12)),
-        lambda: scenarios.edit_study_file(undisturbed, max(2, kills // 20)),
+        lambda: scenarios.kill_runs(undisturbed_dataset, kills - kills // 4),
+        lambda: scenarios.kill_runs(undisturbed_dataset, kills // 4, workers=2),
+        lambda: scenarios.fill_disks(undisturbed_dataset, max(2, kills // 10)),
+        lambda: scenarios.kill_schedulers(undisturbed_dataset, max(1, kills // 33)),
+        lambda: scenarios.damage_batches(undisturbed_dataset, max(7, kills * 7 // 20)),
+        lambda: scenarios.damage_records(undisturbed_dataset, max(4, kills // 5)),
+        lambda: scenarios.start_second_runs(undisturbed_dataset, max(2, kills // 12)),
+        lambda: hosts.run_on_two_hosts(undisturbed_dataset, max(4, kills // 12)),
+        lambda: scenarios.run_simultaneously(undisturbed_dataset, max(2, kills // 12)),
+        lambda: scenarios.shift_clock(undisturbed_dataset, max(2, kills // 12)),
+        lambda: scenarios.edit_study_file(undisturbed_dataset, max(2, kills // 20)),
     )
     results = []
     for trial in trials:

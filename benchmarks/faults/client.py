@@ -74,10 +74,13 @@ def main() -> int:
         killer.start()
         measure_seconds(study, root / "killed", client)
         killer.join()
-        killed, local = (open_study(root / run_name).drop_vars("seconds").load() for run_name in ("killed", "local-0"))
-        print(f"one worker killed: results {'equal' if killed.identical(local) else 'DIFFER'}, bit for bit")
+        killed_dataset, local_dataset = (
+            open_study(root / run_name).drop_vars("seconds").load() for run_name in ("killed", "local-0")
+        )
+        comparison = "equal" if killed_dataset.identical(local_dataset) else "DIFFER"
+        print(f"one worker killed: results {comparison}, bit for bit")
         assert not Folder(root / "killed").holders
-    return int(not killed.identical(local) or ratio > 1.1)
+    return int(not killed_dataset.identical(local_dataset) or ratio > 1.1)
 
 
 if __name__ == "__main__":

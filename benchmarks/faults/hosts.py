@@ -20,8 +20,8 @@ from tests.study.conftest import locate_tickets, start_run
 
 def _format_host_command(host_name: str) -> list[str]:
     """Prefix of a command that runs in a system with the host's `name` and separate process numbers."""
-    separate = ["unshare", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
-    return [*separate, "sh", "-c", 'hostname "$0" && exec "$@"', host_name]
+    separation = ["unshare", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    return [*separation, "sh", "-c", 'hostname "$0" && exec "$@"', host_name]
 
 
 def run_on_two_hosts(undisturbed: xr.Dataset, count: int) -> Row:
@@ -36,9 +36,9 @@ def run_on_two_hosts(undisturbed: xr.Dataset, count: int) -> Row:
     )
     if not is_possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with another name")
-    passed = sum(_survives(undisturbed, host_names[index % 2], killed=index % 4 > 1) for index in range(count))
+    passed_count = sum(_survives(undisturbed, host_names[index % 2], killed=index % 4 > 1) for index in range(count))
     description = "code 2, its host named, it ends bit for bit; after a kill its lock is free, resumed bit for bit"
-    return Row(fault, count, passed, description)
+    return Row(fault, count, passed_count, description)
 
 
 def _survives(undisturbed: xr.Dataset, host_name: str, *, killed: bool) -> bool:

@@ -100,11 +100,11 @@ def main() -> int:
     study = rolling_study(parser.parse_args().cases)
     differences: list[str] = []
     with tempfile.TemporaryDirectory(prefix="rolling-") as name:
-        undisturbed = run_study(study, Path(name) / "undisturbed", 0)
-        print(f"{study.size} cases, {int(undisturbed['converged'].sum())} converged", flush=True)
+        undisturbed_dataset = run_study(study, Path(name) / "undisturbed", 0)
+        print(f"{study.size} cases, {int(undisturbed_dataset['converged'].sum())} converged", flush=True)
         for workers in (0, 2, 3):
             resumed_study = run_study(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
-            differing_names = list_differing_variables(undisturbed, resumed_study)
+            differing_names = list_differing_variables(undisturbed_dataset, resumed_study)
             differences += differing_names
             print(
                 f"killed in the middle and resumed, workers = {workers}: {differing_names or 'all bits equal'}",

@@ -32,22 +32,22 @@ rng = random.Random(17)
 
 def kill_runs(undisturbed: xr.Dataset, count: int, *, workers: int = 0) -> Row:
     """SIGKILL to the run and its workers, at a random time."""
-    passed = kept_count = 0
+    passed_count = kept_count = 0
     run_seconds = _measure_run_seconds(workers)
     with studies.make_study_folder() as folder:
         for _ in range(count):
             if len(studies.list_finished_cases(folder)) > 0.7 * CASES:  # cases remain unsolved until the last kill
                 shutil.rmtree(folder / "out" / "batches")
-            count_before = studies.list_finished_cases(folder)
+            cases_before = studies.list_finished_cases(folder)
             process = _start_until_batch(folder, workers)
             studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             time.sleep(rng.uniform(0.0, run_seconds))
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            count_after = studies.list_finished_cases(folder)
-            kept_count += len(set(count_after) - set(count_before))
-            lost_cases = [identity for identity, run in count_before.items() if count_after.get(identity) != run]
-            passed += not lost_cases and not studies.count_damaged_batches(folder)
+            cases_after = studies.list_finished_cases(folder)
+            kept_count += len(set(cases_after) - set(cases_before))
+            lost_cases = [identity for identity, run in cases_before.items() if cases_after.get(identity) != run]
+            passed_count += not lost_cases and not studies.count_damaged_batches(folder)
         complete = studies.resume_study(folder) == {"ok": CASES}
         complete &= studies.read_values(folder).identical(undisturbed)
         complete &= not studies.list_leftovers(folder) and not (folder / "out" / "set-aside").exists()
@@ -56,7 +56,7 @@ def kill_runs(undisturbed: xr.Dataset, count: int, *, workers: int = 0) -> Row:
         f"no written case lost or solved again ({kept_count} between the kills), every batch intact; resumed "
         f"{'bit for bit, nothing left behind' if complete else 'WRONGLY'}"
     )
-    return Row(f"run {worker_text}: SIGKILL at a random moment", count, passed if complete else 0, result)
+    return Row(f"run {worker_text}: SIGKILL at a random moment", count, passed_count if complete else 0, result)
 
 
 def _start_until_batch(folder: Path, workers: int) -> subprocess.Popen[str] | studies.Forked:
@@ -76,8 +76,8 @@ def _measure_run_seconds(workers: int) -> float:
 
 def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
     """A full file system; without the right to mount one, a limit on the size of files."""
-    passed = cases = 0
-    mounted = False
+    passed_count = cases = 0
+    is_mounted = False
     for _ in range(count):
         with studies.make_study_folder() as folder:
             disk = folder / "out"
@@ -85,7 +85,7 @@ def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
             size = rng.randint(150, 500)
             mount = ["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", str(disk)]
             can_mount = shutil.which("mount") and not subprocess.run(mount, capture_output=True, check=False).returncode
-            mounted = mounted or bool(can_mount)
+            is_mounted = is_mounted or bool(can_mount)
             try:
                 process = studies.start(
                     folder, "--workers", "0", largest_file=None if can_mount else rng.randint(3000, 9000)
@@ -99,15 +99,15 @@ def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
                 if can_mount:
                     subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
                 is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
-                passed += is_correct and studies.read_values(folder).identical(undisturbed)
+                passed_count += is_correct and studies.read_values(folder).identical(undisturbed)
             finally:
                 if can_mount:
                     subprocess.run(["umount", "-l", str(disk)], check=True)
-    medium = "file system of 150 to 500 kB" if mounted else "limit on the size of files (no right to mount)"
+    medium = "file system of 150 to 500 kB" if is_mounted else "limit on the size of files (no right to mount)"
     return Row(
         f"full disk: {medium}",
         count,
-        passed,
+        passed_count,
         f"code 2 and a message, no traceback, no lock held and no torn file left, {cases} cases kept in all; "
         "resumed with room, bit for bit",
     )
@@ -115,7 +115,7 @@ def fill_disks(undisturbed: xr.Dataset, count: int) -> Row:
 
 def kill_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
     """The scheduler of a cluster is killed while its worker solves."""
-    passed = 0
+    passed_count = 0
     for _ in range(count):
         with studies.make_study_folder() as folder:
             outputs = folder / "out"
@@ -132,13 +132,15 @@ def kill_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
             is_correct = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
             is_correct = is_correct and not Folder(outputs).holders and not studies.count_damaged_batches(folder)
             is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
-            passed += is_correct and studies.read_values(folder).identical(undisturbed)
-    return Row("scheduler of a cluster killed", count, passed, "code 2, message, no lock held; resumed bit for bit")
+            passed_count += is_correct and studies.read_values(folder).identical(undisturbed)
+    return Row(
+        "scheduler of a cluster killed", count, passed_count, "code 2, message, no lock held; resumed bit for bit"
+    )
 
 
 def damage_batches(undisturbed: xr.Dataset, count: int) -> Row:
     """Files of batches are cut off, changed, exchanged, or replaced by other files."""
-    passed = 0
+    passed_count = 0
     with studies.make_study_folder() as folder:
         set_aside_folder = folder / "out" / "set-aside"
         for index in range(count):
@@ -154,7 +156,7 @@ def damage_batches(undisturbed: xr.Dataset, count: int) -> Row:
                 and report.solved == lost_cases
                 and not studies.count_damaged_batches(folder)
             )
-            passed += (
+            passed_count += (
                 is_correct
                 and len(list(set_aside_folder.iterdir())) == 1
                 and studies.read_values(folder).identical(undisturbed)
@@ -162,7 +164,7 @@ def damage_batches(undisturbed: xr.Dataset, count: int) -> Row:
     return Row(
         "a batch torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
         count,
-        passed,
+        passed_count,
         "set aside with a message, its cases alone solved again, bit for bit",
     )
 
@@ -214,7 +216,7 @@ DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
 
 def damage_records(undisturbed: xr.Dataset, count: int) -> Row:
     """Files of the output folder beside the batches (log, lock) are changed and cut off."""
-    passed = 0
+    passed_count = 0
     with studies.make_study_folder() as folder:
         studies.resume_study(folder)
         outputs = folder / "out"
@@ -228,14 +230,14 @@ def damage_records(undisturbed: xr.Dataset, count: int) -> Row:
                 data[rng.randrange(len(data))] = rng.randrange(256)
             path.write_bytes(bytes(data[: rng.randrange(1, len(data) + 1)]))
             report = run_study(STUDY, outputs, workers=0, solver=solve_fake)
-            passed += report.counts == {"ok": CASES} and studies.read_values(folder).identical(undisturbed)
+            passed_count += report.counts == {"ok": CASES} and studies.read_values(folder).identical(undisturbed)
     names = ", ".join(f"`{path.name}`" for path in sorted(records))
-    return Row(f"changed and torn bytes in {names}", count, passed, "all cases found again, bit for bit")
+    return Row(f"changed and torn bytes in {names}", count, passed_count, "all cases found again, bit for bit")
 
 
 def start_second_runs(undisturbed: xr.Dataset, count: int) -> Row:
     """Further runs begin during a run."""
-    passed = 0
+    passed_count = 0
     with studies.make_study_folder() as folder:
         outputs = folder / "out"
         holder_run = start_run(folder / "study.toml", outputs, "--workers", "0", tickets=2)
@@ -243,7 +245,7 @@ def start_second_runs(undisturbed: xr.Dataset, count: int) -> Row:
         refused_runs = [start_run(folder / "study.toml", outputs, "--workers", "0", tickets=0) for _ in range(count)]
         for refused_run in refused_runs:
             _, errors = refused_run.communicate(timeout=SECONDS)
-            passed += (
+            passed_count += (
                 refused_run.returncode == 2 and f"process {holder_run.pid} on " in errors and "Traceback" not in errors
             )
         give_tickets(locate_tickets(outputs), CASES)
@@ -252,14 +254,14 @@ def start_second_runs(undisturbed: xr.Dataset, count: int) -> Row:
     return Row(
         "a second run while the first goes on",
         count,
-        passed if is_complete else 0,
+        passed_count if is_complete else 0,
         "code 2, the holder named; the first run ends bit for bit",
     )
 
 
 def run_simultaneously(undisturbed: xr.Dataset, count: int) -> Row:
     """Two runs begin at the same moment."""
-    passed = 0
+    passed_count = 0
     for _ in range(count):
         with studies.make_study_folder() as folder:
             runs = [studies.start(folder, "--workers", "0") for _ in range(2)]
@@ -269,27 +271,27 @@ def run_simultaneously(undisturbed: xr.Dataset, count: int) -> Row:
             is_correct = codes in ([0, 2], [2, 0], [0, 0]) and not any(
                 "Traceback" in errors for errors in error_outputs
             )
-            passed += (
+            passed_count += (
                 is_correct and not studies.list_leftovers(folder) and studies.read_values(folder).identical(undisturbed)
             )
     return Row(
-        "two runs begun at once", count, passed, "one solves, the other is refused or finds all done; bit for bit"
+        "two runs begun at once", count, passed_count, "one solves, the other is refused or finds all done; bit for bit"
     )
 
 
 def shift_clock(undisturbed: xr.Dataset, count: int) -> Row:
     """The time of day jumps by up to ten years either way at every reading, in this process."""
-    passed = 0
+    passed_count = 0
     for _ in range(count):
         with studies.make_study_folder() as folder, _jumping_clock():
             is_correct = studies.resume_study(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
             studies.batches(folder)[0].unlink()
             is_correct = is_correct and studies.resume_study(folder) == {"ok": CASES}
-            passed += is_correct and studies.read_values(folder).identical(undisturbed)
+            passed_count += is_correct and studies.read_values(folder).identical(undisturbed)
     return Row(
         "clock of the process jumps by up to ten years at every reading",
         count,
-        passed,
+        passed_count,
         "run and resumed run, bit for bit",
     )
 
@@ -321,7 +323,7 @@ class _jumping_clock:  # noqa: N801
 
 def edit_study_file(undisturbed: xr.Dataset, count: int) -> Row:
     """The file of the study changes during a run."""
-    passed = 0
+    passed_count = 0
     for _ in range(count):
         with studies.make_study_folder() as folder:
             process = studies.start(folder, "--workers", "0")
@@ -329,13 +331,13 @@ def edit_study_file(undisturbed: xr.Dataset, count: int) -> Row:
             text = format_toml(STUDY)
             (folder / "study.toml").write_text(text[: rng.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
-            passed += (
+            passed_count += (
                 process.returncode == 0
                 and "Traceback" not in errors
                 and studies.read_values(folder).identical(undisturbed)
             )
     return Row(
-        "the study's file torn while it runs", count, passed, "the run uses the file's first content, bit for bit"
+        "the study's file torn while it runs", count, passed_count, "the run uses the file's first content, bit for bit"
     )
 
 

@@ -105,7 +105,7 @@ def integrate_wavenumbers(flexibility: Flexibility, step: float, count: int) -> 
     offsets = step * np.arange(count)
     density = flexibility.values / np.multiply.outer(weights, weights)
     base = density[:, -1, -1]
-    total = np.zeros((count, *density.shape[1:]))
+    pressure_sum = np.zeros((count, *density.shape[1:]))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
         nodes = slice(i * n, (i + 1) * n)
         node, weight = legendre.leggauss(24 + int(2 * (high - low)))
@@ -114,9 +114,9 @@ def integrate_wavenumbers(flexibility: Flexibility, step: float, count: int) -> 
         factor = 0.5 * (high - low) * weight * hat**2 / np.pi
         interpolate = legendre.legvander(node, n - 1) @ inverse_legendre
         waves = np.cos(np.outer(offsets, k))
-        total += np.tensordot(waves * factor @ interpolate, density[nodes] - base[nodes, None, None], axes=1)
-        total += ((waves - 1) / k * factor @ interpolate @ (flexibility.k[nodes] * base[nodes]))[:, None, None]
-    return total * np.multiply.outer(weights, weights)
+        pressure_sum += np.tensordot(waves * factor @ interpolate, density[nodes] - base[nodes, None, None], axes=1)
+        pressure_sum += ((waves - 1) / k * factor @ interpolate @ (flexibility.k[nodes] * base[nodes]))[:, None, None]
+    return pressure_sum * np.multiply.outer(weights, weights)
 
 
 @dataclass(frozen=True)
@@ -137,9 +137,9 @@ def solve(case: ContactCase, flexibility: Flexibility, step: float, window: floa
     multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat away from the middle includes its mirror image
     # The unknown of a row is also that of its mirror image at -y: the flexibilities of both rows add up.
     row_difference, row_sum = np.abs(row[:, None] - row), row[:, None] + row
-    folded = strips[row_difference] + strips[row_sum]
-    folded *= (0.5 * np.multiply.outer(multiplicity, multiplicity))[..., None, None]
-    matrix = np.einsum("ai,mnij,bj->manb", merge, folded, merge, optimize=True)
+    folded_strips = strips[row_difference] + strips[row_sum]
+    folded_strips *= (0.5 * np.multiply.outer(multiplicity, multiplicity))[..., None, None]
+    matrix = np.einsum("ai,mnij,bj->manb", merge, folded_strips, merge, optimize=True)
     size = matrix.shape[0] * matrix.shape[1]
     matrix = matrix.reshape(size, size) / (1 - case.poisson)  # 2 G = E* (1 - nu), and E* is 1
     matrix = 0.5 * (matrix + matrix.T)

@@ -21,12 +21,12 @@ from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.verification.problems import CONTACT_CASES, ContactCase
 
 PRODUCTION = Resolution(order=4, growth=1.8, smallest=0.02, nodes=5)
-LOWER = replace(PRODUCTION, order=3)
+LOWER_ORDER = replace(PRODUCTION, order=3)
 VARIANTS = {  # name: (variant, reference)
-    "order": (LOWER, PRODUCTION),
-    "mesh": (replace(LOWER, growth=2.4, smallest=0.04), LOWER),
-    "depth": (replace(LOWER, depth=7e3), LOWER),
-    "wavenumbers": (replace(LOWER, nodes=4), LOWER),
+    "order": (LOWER_ORDER, PRODUCTION),
+    "mesh": (replace(LOWER_ORDER, growth=2.4, smallest=0.04), LOWER_ORDER),
+    "depth": (replace(LOWER_ORDER, depth=7e3), LOWER_ORDER),
+    "wavenumbers": (replace(LOWER_ORDER, nodes=4), LOWER_ORDER),
 }
 STEP, WINDOW = 1 / 16, 1.75
 
@@ -36,14 +36,14 @@ def solve_reference(case: ContactCase) -> xr.Dataset:
     flexibilities = {
         resolution: compute_flexibility(case, resolution)
         for resolution in dict.fromkeys(
-            [PRODUCTION, LOWER, *(changed_resolution for changed_resolution, _ in VARIANTS.values())]
+            [PRODUCTION, LOWER_ORDER, *(changed_resolution for changed_resolution, _ in VARIANTS.values())]
         )
     }
     production = solve(case, flexibilities[PRODUCTION], STEP, WINDOW)
 
     def evaluate_on_nodes(solution: SolvedContact) -> np.ndarray:
-        resampled = np.array([np.interp(production.x, solution.x, row) for row in solution.pressure.T])
-        return np.array([np.interp(production.y, solution.y, row) for row in resampled.T])
+        resampled_rows = np.array([np.interp(production.x, solution.x, row) for row in solution.pressure.T])
+        return np.array([np.interp(production.y, solution.y, row) for row in resampled_rows.T])
 
     def compute_line_load(pressure: np.ndarray) -> np.ndarray:
         return np.asarray(2 * np.trapezoid(pressure, production.y, axis=1))

@@ -64,10 +64,10 @@ def compute_compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, res
         transform = (np.sin(np.outer(ends[0], wave)) - np.sin(np.outer(ends[1], wave))) / wave
         # The part like 1 / k at small k, equal for all columns, is integrated with cos(k y) - 1, up to a constant.
         common_response = response[:, 0, -1]
-        steady = (transform - (ends[0] - ends[1])[:, None]) / wave @ interpolate @ (k * common_response)
+        steady_part = (transform - (ends[0] - ends[1])[:, None]) / wave @ interpolate @ (k * common_response)
         total += (
             np.tensordot(transform @ interpolate, response - common_response[:, None, None], axes=1)
-            + steady[:, None, None]
+            + steady_part[:, None, None]
         )
     total *= widths
     # Beyond the last panel the response falls like 1 / k.
@@ -182,11 +182,11 @@ def solve(
             film_derivative += np.diag(np.tile(length_per_time, x.size))
             jacobian = pressure_derivative + sparse.csr_array(film_derivative) @ matrix
             scale = np.abs(jacobian.diagonal())
-            cavitated = scale * pressure.ravel() < outflow
-            rows = np.where(cavitated[:, None], np.eye(gap.size), jacobian / scale[:, None])
-            approach_derivative = np.where(cavitated, 0.0, film_derivative.sum(axis=1) / scale)
+            is_cavitated = scale * pressure.ravel() < outflow
+            rows = np.where(is_cavitated[:, None], np.eye(gap.size), jacobian / scale[:, None])
+            approach_derivative = np.where(is_cavitated, 0.0, film_derivative.sum(axis=1) / scale)
             right_side = np.append(
-                np.where(cavitated, -pressure.ravel(), -outflow / scale), load - areas @ pressure.ravel()
+                np.where(is_cavitated, -pressure.ravel(), -outflow / scale), load - areas @ pressure.ravel()
             )
             change = np.linalg.solve(np.block([[rows, approach_derivative[:, None]], [areas, np.zeros(1)]]), right_side)
             film_change = change[-1] + matrix @ change[:-1]

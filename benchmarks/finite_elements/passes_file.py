@@ -79,13 +79,13 @@ def append_reference(path: Path, name: str) -> None:
     """Solve one case at all resolutions and add the case to the file."""
     start, case = time.perf_counter(), PASSES_CASES[name]
     strip = replace(PRODUCTION, step=LONGER_STEPS.get(name, PRODUCTION.step))
-    lower = replace(strip, step=4 * strip.step)
-    fine_result, coarse_result = solve_reference(case, strip), solve_reference(case, lower)
+    lower_strip = replace(strip, step=4 * strip.step)
+    fine_result, coarse_result = solve_reference(case, strip), solve_reference(case, lower_strip)
     estimates = {
         "step": {quantity: compute_max_difference(coarse_result, fine_result, quantity) / 3 for quantity in NAMES}
     }
     for variant, (changes, fraction) in COARSER_VARIANTS.items():
-        coarser_result = solve_reference(case, replace(lower, **changes))
+        coarser_result = solve_reference(case, replace(lower_strip, **changes))
         estimates[variant] = {
             quantity: fraction * compute_max_difference(coarser_result, coarse_result, quantity) for quantity in NAMES
         }

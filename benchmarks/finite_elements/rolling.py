@@ -90,7 +90,7 @@ def compute_flexibility(length: float, columns: int, poisson: float, resolution:
             wavenumbers.append(float(k))
     return ColumnFlexibility(
         edges=edges,
-        **{name: np.array(compute_flexibility) for name, compute_flexibility in flexibilities.items()},
+        **{name: np.array(flexibility) for name, flexibility in flexibilities.items()},
         k=np.array(wavenumbers),
         poisson=poisson,
         resolution=resolution,
@@ -177,7 +177,7 @@ def solve_rolling(
     matrix = np.block([[_make_blocks(flexibilities["x"], strips), cross_blocks], [cross_blocks.T, matrix_y]])
     matrix = 0.5 * (matrix + matrix.T)
     loaded_cells = np.flatnonzero(pressure > 0)
-    count, unknown = loaded_cells.size, np.concatenate([loaded_cells, areas.size + loaded_cells])
+    count, unknown_indices = loaded_cells.size, np.concatenate([loaded_cells, areas.size + loaded_cells])
     force = force_fraction * friction * pressure.sum()
     # The sum of the q along y, then (f p, q_x, q_y) cell by cell in a cone.
     indices = np.arange(count)
@@ -188,7 +188,7 @@ def solve_rolling(
     limits = np.zeros(1 + 3 * count)
     limits[0], limits[1::3] = force, friction * pressure[loaded_cells]
     cones = [clarabel.ZeroConeT(1), *[clarabel.SecondOrderConeT(3)] * count]
-    upper_triangle = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown, unknown)]))
+    upper_triangle = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown_indices, unknown_indices)]))
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     traction, change, creepage = np.zeros((2, half_columns, strips)), np.inf, np.nan
@@ -197,10 +197,10 @@ def solve_rolling(
         traction_ahead[:, :, :-1] = traction[:, :, 1:]
         surface_shift = 2 * matrix @ traction_ahead.ravel()
         solution = clarabel.DefaultSolver(
-            upper_triangle, -surface_shift[unknown], constraints, limits, cones, settings=settings
+            upper_triangle, -surface_shift[unknown_indices], constraints, limits, cones, settings=settings
         ).solve()
         forces = np.zeros(2 * areas.size)
-        forces[unknown] = solution.x
+        forces[unknown_indices] = solution.x
         change = float(np.abs(forces - traction.ravel()).max() / (friction * pressure.max()))
         traction, creepage = forces.reshape(traction.shape), -solution.z[0] / width
     return RollingSolution(

@@ -37,12 +37,12 @@ X = {
     0.5: (0.0, 0.02, 0.05, 0.1, 0.25, 0.4, 0.5),
 }
 PRODUCTION = Resolution()
-LOWER = replace(PRODUCTION, order=5)
+LOWER_ORDER = replace(PRODUCTION, order=5)
 VARIANTS = {  # name: (variant, reference)
-    "order": (LOWER, PRODUCTION),
-    "mesh": (replace(LOWER, growth=2.2, smallest=0.05), LOWER),
-    "depth": (replace(LOWER, depth=7e3), LOWER),
-    "wavenumbers": (replace(LOWER, nodes=5, panels=(0, 0.02, *PANELS[2:-1], 80)), LOWER),
+    "order": (LOWER_ORDER, PRODUCTION),
+    "mesh": (replace(LOWER_ORDER, growth=2.2, smallest=0.05), LOWER_ORDER),
+    "depth": (replace(LOWER_ORDER, depth=7e3), LOWER_ORDER),
+    "wavenumbers": (replace(LOWER_ORDER, nodes=5, panels=(0, 0.02, *PANELS[2:-1], 80)), LOWER_ORDER),
 }
 
 
@@ -106,26 +106,40 @@ def write(path: Path) -> None:
             dict.fromkeys([(c.g, "z") for c in cases.values()] + [(c.g, "y") for c in cases.values() if c.friction])
         )
         results: dict[Resolution, dict[str, xr.Dataset]] = {}
-        for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
+        for resolution in dict.fromkeys(
+            [PRODUCTION, LOWER_ORDER, *(changed_resolution for changed_resolution, _ in VARIANTS.values())]
+        ):
             start = time.perf_counter()
             harmonics_of_body = harmonics(length, poisson, shapes, X[length], Z, resolution=resolution)
-            results[resolution] = {n: evaluate(c, harmonics_of_body, list(shapes)) for n, c in cases.items()}
+            results[resolution] = {
+                name: evaluate(case, harmonics_of_body, list(shapes)) for name, case in cases.items()
+            }
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():
-            estimates = {v: compute_max_changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
+            estimates = {
+                variant: compute_max_changes(results[changed_resolution][name], results[resolution][name])
+                for variant, (changed_resolution, resolution) in VARIANTS.items()
+            }
             dataset = results[PRODUCTION][name]
             dataset.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
             for variant, (largest, median, _) in estimates.items():
                 dataset.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
-            dataset.attrs["error_estimate"] = sum(c[0] for c in estimates.values())
-            dataset.attrs["error_estimate_median"] = sum(c[1] for c in estimates.values())
+            dataset.attrs["error_estimate"] = sum(changes[0] for changes in estimates.values())
+            dataset.attrs["error_estimate_median"] = sum(changes[1] for changes in estimates.values())
             if "displacement_z_young" in dataset:
-                dataset["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
-            dataset = dataset.assign_coords({k: list(v) for k, v in make_coordinates(case).items()})
+                dataset["displacement_z_young"].attrs["error_estimate"] = sum(
+                    changes[2] for changes in estimates.values()
+                )
+            dataset = dataset.assign_coords(
+                {axis: list(positions) for axis, positions in make_coordinates(case).items()}
+            )
             append_case(path, name, dataset)
             print(
                 name,
                 dataset.attrs["error_estimate"],
-                {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in estimates.items()},
+                {
+                    variant: f"{changes[0]:.1e}, {changes[1]:.1e}, {changes[2]:.1e}"
+                    for variant, changes in estimates.items()
+                },
                 flush=True,
             )

@@ -97,9 +97,9 @@ def forces_of_tractions(solution: SolvedCase) -> bool:
     for name, (value, scale) in residuals.items():
         difference = abs(float(result[name]) - value) / scale
         require(difference <= 1e-6, f"{name} differs from the tractions' resultant by {difference:.3g}")
-        prescribed = getattr(case.motion, name, None)
-        if prescribed is not None:
-            difference = abs(float(result[name]) - prescribed) / scale
+        prescribed_value = getattr(case.motion, name, None)
+        if prescribed_value is not None:
+            difference = abs(float(result[name]) - prescribed_value) / scale
             require(difference <= 1e-3, f"{name} differs from its prescribed value by {difference:.3g}")
     return True
 
@@ -138,9 +138,10 @@ def slip_work_equals_friction_work(solution: SolvedCase) -> bool:
     if not isinstance(case.motion, Rolling) or case.motion.model == "fastsim":
         return False
     density = sum(result[f"traction_{axis}"].values * result[f"slip_{axis}"].values for axis in "xy")
-    summed, work = float((solution.grid.widths @ density).sum()) * solution.grid.dy, float(result["friction_work"])
+    summed_work, work = float((solution.grid.widths @ density).sum()) * solution.grid.dy, float(result["friction_work"])
     require(
-        abs(summed - work) <= 1e-6 * work, f"the traction times the slip sums to {summed:.6g}, the work is {work:.6g}"
+        abs(summed_work - work) <= 1e-6 * work,
+        f"the traction times the slip sums to {summed_work:.6g}, the work is {work:.6g}",
     )
     return True
 
@@ -171,14 +172,14 @@ def scaled_units(solution: SolvedCase) -> bool:
     if scaled_solution is None:
         return False
     for axis in "xy":
-        traction, scaled = (
+        traction, scaled_traction = (
             solution.result[f"traction_{axis}"].values,
             scaled_solution[f"traction_{axis}"].values / modulus,
         )
         _require_equal(
             f"lengths x {length:g}, moduli x {modulus:g}",
             traction,
-            scaled,
+            scaled_traction,
             solution.random_case.case.friction * solution.peak,
         )
     return True

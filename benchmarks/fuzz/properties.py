@@ -53,9 +53,11 @@ def finite_values(solution: SolvedCase) -> bool:
         name = str(key)
         array = np.asarray(values.values)
         exponent = name.removesuffix("_error").replace("intensity", "exponent")
-        unknown = name.startswith("end_intensity") and float(solution.result[exponent]) == 0  # the law is a logarithm
-        unknown |= name == "corner_distance" and np.isinf(float(solution.result["corner_distance_error"]))
-        if array.dtype.kind == "f" and not unknown:
+        is_unknown = (
+            name.startswith("end_intensity") and float(solution.result[exponent]) == 0
+        )  # the law is a logarithm
+        is_unknown |= name == "corner_distance" and np.isinf(float(solution.result["corner_distance_error"]))
+        if array.dtype.kind == "f" and not is_unknown:
             require(not np.isnan(array).any(), f"{name} contains NaN")
     pressure, gap = solution.result["pressure"].values, solution.result["gap"].values
     require(np.isfinite(pressure).all() and pressure.min() >= 0 and pressure.max() > 0, "pressure out of range")
@@ -95,9 +97,13 @@ def complementarity(solution: SolvedCase) -> bool:
     line_coefficients = np.polynomial.polynomial.polyfit(
         solution.grid.x, rigid_motion[:, 0], min(1, rigid_motion.shape[0] - 1)
     )
-    fitted = np.polynomial.polynomial.polyval(solution.grid.x, line_coefficients)[:, None]
+    fitted_line = np.polynomial.polynomial.polyval(solution.grid.x, line_coefficients)[:, None]
     require_close(
-        "rigid motion of the reference line", rigid_motion, fitted + 0 * rigid_motion, float(np.ptp(displacement)), 1e-6
+        "rigid motion of the reference line",
+        rigid_motion,
+        fitted_line + 0 * rigid_motion,
+        float(np.ptp(displacement)),
+        1e-6,
     )
     arm = (solution.grid.x - (case.load_position or 0.0))[:, None]
     tilt = float(result["tilt"]) - case.tilt

@@ -90,10 +90,10 @@ def run(random_case: RandomCase, **positions: list[float]) -> xr.Dataset:
             **positions,
         )
     categories = {warning.category for warning in caught}
-    unexpected = [
+    unexpected_warnings = [
         str(warning.message) for warning in caught if warning.category not in (ConvergenceWarning, MagnitudeWarning)
     ]
-    require(not unexpected, f"an undeclared warning: {unexpected[:1]}")
+    require(not unexpected_warnings, f"an undeclared warning: {unexpected_warnings[:1]}")
     require(
         bool(result["converged"]) == (ConvergenceWarning not in categories),
         "converged and warning contradict each other",

@@ -86,12 +86,12 @@ class Trials:
         ordered_tests = sorted(
             reaching_tests, key=lambda test: (self.test_seconds[test] + 0.05) / (1 + 5 * failures_by_test[test])
         )
-        chosen, total = [], 0.0
+        chosen_tests, total_seconds = [], 0.0
         for test in ordered_tests:
-            if total + self.test_seconds[test] <= self.seconds:
-                chosen.append((test, self.test_seconds[test]))
-                total += self.test_seconds[test]
-        return chosen
+            if total_seconds + self.test_seconds[test] <= self.seconds:
+                chosen_tests.append((test, self.test_seconds[test]))
+                total_seconds += self.test_seconds[test]
+        return chosen_tests
 
     def try_mutant(self, mutant: Mutant) -> Notes:
         """Test a change and return the first failing test."""
@@ -142,10 +142,12 @@ def main() -> None:
         )
         notes = read_notes(tried_path, "change")
         trials.count_failures(notes)
-        finished = {key for key, note in notes.items() if note["by"] or not options.again}
+        finished_keys = {key for key, note in notes.items() if note["by"] or not options.again}
         mutants = [mutant for mutant in list_mutants() if options.only in mutant.key]
         Random(0).shuffle(mutants)
-        remaining = [mutant for mutant in mutants[: options.sample] if mutant.key not in finished | set(EQUIVALENT)]
+        remaining = [
+            mutant for mutant in mutants[: options.sample] if mutant.key not in finished_keys | set(EQUIVALENT)
+        ]
         share_work(trials.try_mutant, remaining, tried_path, options.processes)
         print(format_summary(read_notes(tried_path, "change")))
 

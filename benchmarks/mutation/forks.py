@@ -91,7 +91,7 @@ class Session:
         def run_test(send: Callable[[str], None]) -> None:
             sys.settrace(_make_tracer(lines))
             start_time = time.process_time()
-            failed = self._fails(test)
+            test_failed = self._fails(test)
             sys.settrace(None)
             statements = {}
             for name, line_numbers in lines.items():
@@ -99,7 +99,7 @@ class Session:
                 statements[str(Path(name).relative_to(ROOT))] = sorted(
                     {texts[line_number - 1].strip() for line_number in line_numbers}
                 )
-            send(json.dumps(asdict(Reached(test, not failed, time.process_time() - start_time, statements))))
+            send(json.dumps(asdict(Reached(test, not test_failed, time.process_time() - start_time, statements))))
 
         message, _ = run_forked(run_test)
         return Reached(**json.loads(message[-1])) if message else Reached(test, False, 0.0, {})

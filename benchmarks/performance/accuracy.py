@@ -141,9 +141,11 @@ def draw_profile(rng: np.random.Generator, p0: float, length: float, modulus: fl
         pressure = p0 * rng.uniform(0.6, 1.2)
         return name, profiles.Lundberg.for_pressure(pressure, radius=RADIUS, modulus=modulus)
     if kind == "partial crown":
-        straight = length * rng.uniform(0.3, 0.8)
+        straight_length = length * rng.uniform(0.3, 0.8)
         radius = _draw_log_uniform(rng, 0.1, 3.0)
-        return f"{name} {straight / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(straight, radius)
+        return f"{name} {straight_length / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(
+            straight_length, radius
+        )
     x = np.linspace(-0.5 * length, 0.5 * length, 401)
     drops = (crown + rounded_cylinder).drop(x, length)
     return f"{name} crown {1e6 * sag:.1f} um + fillet {1e3 * fillet:.3f} mm", profiles.Measured(
@@ -202,14 +204,17 @@ def format_table(comparisons: list[Comparison], refused: list[str], seconds_per_
     ]
     for value in (*VALUES, *LOADS, *INTENSITIES):
         rows = [row for row in comparisons if row.value == value]
-        finite = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
+        finite_rows = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
         if rows:
-            covered = sum(row.is_covered for row in rows)
-            median_difference = np.median([abs(row.loose - row.tight) for row in finite]) if finite else np.nan
-            error = np.median([row.error for row in finite]) if finite else np.nan
-            percentage = 100 * covered / len(rows)
+            covered_count = sum(row.is_covered for row in rows)
+            median_difference = (
+                np.median([abs(row.loose - row.tight) for row in finite_rows]) if finite_rows else np.nan
+            )
+            error = np.median([row.error for row in finite_rows]) if finite_rows else np.nan
+            percentage = 100 * covered_count / len(rows)
             lines.append(
-                f"| {value} | {len(rows)} | {covered} | {percentage:.1f} | {median_difference:.4f} | {error:.4f} |"
+                f"| {value} | {len(rows)} | {covered_count} | {percentage:.1f} | {median_difference:.4f} "
+                f"| {error:.4f} |"
             )
     case_numbers = sorted({row.random_case.number for row in comparisons})
     missed_cases = {row.random_case.number for row in comparisons if not row.is_covered and row.value in VALUES}

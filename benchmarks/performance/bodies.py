@@ -72,7 +72,7 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
         }
         return compute_medians(timed_functions, repeats)
 
-    sliding = time_stresses(0.3, line_pressure, False)
+    sliding_seconds = time_stresses(0.3, line_pressure, False)
     first_call = time_stresses(0.0, line_pressure, True)
     for name, seconds, bar in (
         ("", first_call, 0.26),
@@ -83,7 +83,7 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
             ours=format_time(seconds["half-space"]),
             bar=f"{bar} s",
             met=seconds["half-space"] <= bar,
-            notes="with friction " + format_time(sliding["half-space"]) if name else "",
+            notes="with friction " + format_time(sliding_seconds["half-space"]) if name else "",
         )
         yield compare_with_half_space(f"... finite-length{name}", seconds)
     for name, is_cold in (("", True), ("..., same cells", False)):

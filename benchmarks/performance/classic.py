@@ -37,11 +37,11 @@ def solve_classic(problem: Problem, tolerance: float) -> FloatArray:
     """Pressure by the conjugate gradients of I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206."""
     gap = problem.finite_gap
     cells = gap.shape
-    padded = (2 * cells[0], 2 * cells[1])
+    padded_shape = (2 * cells[0], 2 * cells[1])
     spectrum = compute_influence_spectrum(problem)
 
     def apply(pressure: FloatArray) -> FloatArray:
-        convolution = fft.irfft2(fft.rfft2(pressure, s=padded) * spectrum, s=padded)
+        convolution = fft.irfft2(fft.rfft2(pressure, s=padded_shape) * spectrum, s=padded_shape)
         return np.asarray(convolution[: cells[0], : cells[1]])
 
     pressure_sum = problem.load * cells[0] * cells[1] / (problem.size[0] * problem.size[1])

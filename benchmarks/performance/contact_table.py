@@ -44,8 +44,8 @@ CORES, MINUTES = 2, 10.0
 def make_contact_table_study(contacts: int) -> Study:
     """Study of a random sample of the contacts."""
     combinations = np.array(list(itertools.product(LOADS, DISTANCES, TILTS)))
-    selected = np.random.default_rng(1).permutation(combinations)[:contacts]
-    load, distance, tilt = selected.T.tolist()
+    selected_combinations = np.random.default_rng(1).permutation(combinations)[:contacts]
+    load, distance, tilt = selected_combinations.T.tolist()
     return Study(
         name="contact_table",
         level="summary",

@@ -133,16 +133,16 @@ def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
     bar = 2.0
     half_space = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
     for overhang, label in ((2.0, "ends 2a inside the body's"), (0.0, "roller as long as the body")):
-        with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
+        roller_with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
         timed_functions: dict[str, Callable[[], object]] = {
-            "finite": partial(solve_peer_contact, with_ends),
+            "finite": partial(solve_peer_contact, roller_with_ends),
             "built": partial(solve_peer_contact, half_space),
             "cold": partial(solve_ours, half_space, 1e-6),
         }
         seconds = compute_medians(timed_functions, repeats)
         application_counts = {
             name: int(solve_peer_contact(problem)["iterations"])
-            for name, problem in (("f", with_ends), ("h", half_space))
+            for name, problem in (("f", roller_with_ends), ("h", half_space))
         }
         ratio = seconds["finite"] / seconds["built"]
         yield Row(

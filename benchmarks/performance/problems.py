@@ -50,8 +50,8 @@ class Problem:
     @property
     def finite_gap(self) -> FloatArray:
         """Gap for codes without infinite gaps."""
-        finite = np.isfinite(self.gap)
-        return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
+        is_finite = np.isfinite(self.gap)
+        return np.where(is_finite, self.gap, DISTANT_GAP * self.gap[is_finite].max())
 
     def make_gap_array(self, stretch: float = 1.0) -> xr.DataArray:
         """Gap with its coordinates; another `stretch` makes a grid whose operator is not cached."""

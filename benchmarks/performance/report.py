@@ -45,14 +45,14 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=BENCHMARKS, default=list(BENCHMARKS), help="benchmarks to run")
     parser.add_argument("--markdown", type=Path, help="file to write the table to")
     arguments = parser.parse_args()
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     report = Report()
     for name in arguments.only:
         for row in BENCHMARKS[name](max(1, arguments.repeats), report):
             report.rows.append(row)
             print(row.plain(), flush=True)
     report.add_remark(
-        f"{describe_versions()}; medians of {arguments.repeats}; {time.perf_counter() - started:.0f} s in all"
+        f"{describe_versions()}; medians of {arguments.repeats}; {time.perf_counter() - start_time:.0f} s in all"
     )
     print("\n" + report.markdown())
     if arguments.markdown:

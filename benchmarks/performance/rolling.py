@@ -16,7 +16,7 @@ from contactstudy.verification.tribology import ellipse_gap, material
 
 STEEL, FRICTION, LOAD = material(82e9, 0.28), 0.33, 106.7e3
 HALF_WIDTH_X, HALF_WIDTH_Y = 12.61e-3, 6.304e-3  # of the ellipse, metres
-PUBLISHED = {3148: (0.3, 0.3), 50796: (22.6, 6.0)}
+PUBLISHED_SECONDS = {3148: (0.3, 0.3), 50796: (22.6, 6.0)}
 """Cells in contact of CONTACT's published times: seconds of CONTACT (one thread, 2016), and the bar of this package."""
 
 
@@ -32,7 +32,7 @@ def widen_gap(gap: xr.DataArray, rows: int) -> xr.DataArray:
 
 def steady_rolling(repeats: int, report: Report) -> Iterator[Row]:
     """Stick and slip of an ellipse: time beyond the time of the normal contact."""
-    for cells, (published, bar) in PUBLISHED.items():
+    for cells, (published_seconds, bar) in PUBLISHED_SECONDS.items():
         cells_across = round(np.sqrt(4 * cells / np.pi))
         gap = widen_gap(
             ellipse_gap(HALF_WIDTH_X, HALF_WIDTH_Y, LOAD, STEEL, (cells_across + 2, cells_across + 6)),
@@ -69,7 +69,7 @@ def steady_rolling(repeats: int, report: Report) -> Iterator[Row]:
         yield Row(
             work=f"steady rolling, {int((solution['pressure'] > 0).sum())} cells in contact, half-space",
             ours=format_time(rolling_seconds["half-space"]),
-            peers=f"CONTACT {published} s, published in 2016",
+            peers=f"CONTACT {published_seconds} s, published in 2016",
             bar=f"{bar} s",
             met=rolling_seconds["half-space"] <= bar,
             notes="without the time of the normal contact",

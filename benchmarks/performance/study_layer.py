@@ -210,11 +210,12 @@ def print_planning() -> None:
     study = Study(name="million", base=TABLE, sweep=sweep)
     start_time = time.process_time()
     plan = study.plan()
-    unique, checked = len(plan.unique), plan.review.checked
+    unique_count, checked_count = len(plan.unique), plan.review.checked
     seconds = time.process_time() - start_time
     memory = measure_peak_memory()
     print(
-        f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {memory:.0f} MB (bar 1000 MB)"
+        f"plan: {unique_count} cases, {checked_count} contacts checked, {seconds:.1f} s (bar 10 s), "
+        f"{memory:.0f} MB (bar 1000 MB)"
     )
 
 

@@ -34,12 +34,12 @@ def test_cell_size_ignores_padding() -> None:
 
 
 def test_single_case_of_study_has_no_padding(study_dataset: xr.Dataset) -> None:
-    selected = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
-    case = analysis.single_case(selected)
+    study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
+    case = analysis.single_case(study_case)
     assert case["pressure"].dims == ("x", "y")
     assert case["von_mises"].dims == ("x_field", "y_field", "z")
     assert np.isfinite(case["pressure"]).all()
-    assert np.array_equal(case["x"], selected["x"].values[np.isfinite(selected["x"])])
+    assert np.array_equal(case["x"], study_case["x"].values[np.isfinite(study_case["x"])])
     assert analysis.single_case(case).identical(case)
 
 

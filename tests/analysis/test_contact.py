@@ -55,9 +55,11 @@ def test_invalid_interval_raises(start, stop, message: str) -> None:
 
 
 def test_normalized_data_and_single_row_raise() -> None:
-    normalized = analysis.normalized(contact_of(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
+    normalized_result = analysis.normalized(
+        contact_of(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0)
+    )
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
-        analysis.line_load(normalized)
+        analysis.line_load(normalized_result)
     with pytest.raises(InvalidInputError, match="two positions along y or more"):
         analysis.line_load(contact_of(PRESSURE_VALUES).isel(y=[1]))
     with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
@@ -211,12 +213,12 @@ def test_edge_pressure_of_cut_end_is_nan(x_slice: slice, first: float, last: flo
         contact_of(PRESSURE_VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
     )
     full_contact = full_contact.reset_coords("normal_load").assign(hertz_half_width=1.0)
-    selected = full_contact.isel(x=x_slice).assign_coords(x_width=1.0)
-    end_pressures = analysis.edge_pressure(selected)
+    selected_contact = full_contact.isel(x=x_slice).assign_coords(x_width=1.0)
+    end_pressures = analysis.edge_pressure(selected_contact)
     assert [float(end_pressures[f"edge_pressure_{end_name}"]) for end_name in ("first", "last")] == pytest.approx(
         [first, last], nan_ok=True
     )
-    edge_factors = analysis.edge_factors(selected)
+    edge_factors = analysis.edge_factors(selected_contact)
     for end_name in ("first", "last"):
         assert np.isnan(float(edge_factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
     half_result = analysis.edge_pressure(full_contact.sel(y=slice(0, None)))

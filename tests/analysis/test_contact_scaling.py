@@ -25,10 +25,10 @@ def test_normalized_results_of_similar_contacts_are_equal(strip_result) -> None:
 def test_normalized_scalars_follow_their_units(strip_result) -> None:
     result = strip_result(2e-4, 1e9)
     scalars = analysis.contact_results(result).assign(result[["hertz_half_width", "hertz_max_pressure"]])
-    scaled = analysis.normalized(scalars)
-    assert float(scaled["contact_area"]) == pytest.approx(4 * 2, rel=0.05)
-    assert float(scaled["resultant"]) == pytest.approx(4 * np.pi / 2, rel=2e-3)
-    assert scaled["resultant"].attrs["long_name"].endswith("over p0 a**2")
+    normalized_scalars = analysis.normalized(scalars)
+    assert float(normalized_scalars["contact_area"]) == pytest.approx(4 * 2, rel=0.05)
+    assert float(normalized_scalars["resultant"]) == pytest.approx(4 * np.pi / 2, rel=2e-3)
+    assert normalized_scalars["resultant"].attrs["long_name"].endswith("over p0 a**2")
 
 
 def test_normalized_study_uses_scales_of_each_case(study_dataset: xr.Dataset) -> None:
@@ -102,11 +102,11 @@ def test_dimension_without_positions_raises(strip_result) -> None:
 
 def test_positions_over_a_have_attributes_of_normalized_positions(strip_result) -> None:
     result = strip_result(1e-4, 1e9)
-    scaled, result_over_a = analysis.normalized(result), analysis.positions_over_a(result)
+    normalized_scalars, result_over_a = analysis.normalized(result), analysis.positions_over_a(result)
     for name in ("x", "y", "z", "x_field"):
-        assert scaled[name].attrs == result_over_a[f"{name}_over_a"].attrs, name
-    assert scaled["z"].attrs["long_name"] == "z over a"
-    assert scaled["z"].attrs["comment"] == "depth, below the loaded surface"
+        assert normalized_scalars[name].attrs == result_over_a[f"{name}_over_a"].attrs, name
+    assert normalized_scalars["z"].attrs["long_name"] == "z over a"
+    assert normalized_scalars["z"].attrs["comment"] == "depth, below the loaded surface"
 
 
 def test_positions_in_millimetres_have_same_ratio(strip_result) -> None:

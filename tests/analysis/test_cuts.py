@@ -48,9 +48,10 @@ def test_cut_contains_stresses_or_named_surface() -> None:
 
 
 def test_plane_does_not_depend_on_order_of_positions() -> None:
-    shuffled = make_linear_field().isel(z=[3, 0, 4, 1, 2])
+    shuffled_field = make_linear_field().isel(z=[3, 0, 4, 1, 2])
     assert np.allclose(
-        analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(make_linear_field(), z=0.3)["von_mises"]
+        analysis.in_plane(shuffled_field, z=0.3)["von_mises"],
+        analysis.in_plane(make_linear_field(), z=0.3)["von_mises"],
     )
 
 
@@ -72,19 +73,25 @@ def test_line_value_equals_nearest_sample(case_result: xr.Dataset) -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda ds: analysis.along_line(ds, (0, 0, 0), (0, 0, 2)), "z = .*: must be within the result, 0 to 1 m"),
-        (lambda ds: analysis.along_line(ds, (0, 0), (1, 1)), r"\(x, y, z\) for fields below"),
-        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1)), "both"),
-        (lambda ds: analysis.along_line(ds, (0, 0, 0), (0, 0, 0)), "different from start"),
-        (lambda ds: analysis.along_line(ds, (0, 0, np.nan), (0, 0, 0)), "start"),
-        (lambda ds: analysis.along_line(ds, "here", (0, 0, 0)), "start"),
-        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1, 1), points=1), "points"),
-        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1, 1), variables=["von_mises", "pressure"]), "same points"),
-        (lambda ds: analysis.in_plane(ds), "exactly one"),
-        (lambda ds: analysis.in_plane(ds, x=0.1, y=0.1), "exactly one"),
-        (lambda ds: analysis.in_plane(ds, z=0.1, variables="pressure"), "fields along z"),
-        (lambda ds: analysis.in_plane(ds, y="middle"), "y = 'middle'"),
-        (lambda ds: analysis.in_plane(ds, y=-0.5), "y = -0.5"),
+        (
+            lambda dataset: analysis.along_line(dataset, (0, 0, 0), (0, 0, 2)),
+            "z = .*: must be within the result, 0 to 1 m",
+        ),
+        (lambda dataset: analysis.along_line(dataset, (0, 0), (1, 1)), r"\(x, y, z\) for fields below"),
+        (lambda dataset: analysis.along_line(dataset, (0, 0, 0), (1, 1)), "both"),
+        (lambda dataset: analysis.along_line(dataset, (0, 0, 0), (0, 0, 0)), "different from start"),
+        (lambda dataset: analysis.along_line(dataset, (0, 0, np.nan), (0, 0, 0)), "start"),
+        (lambda dataset: analysis.along_line(dataset, "here", (0, 0, 0)), "start"),
+        (lambda dataset: analysis.along_line(dataset, (0, 0, 0), (1, 1, 1), points=1), "points"),
+        (
+            lambda dataset: analysis.along_line(dataset, (0, 0, 0), (1, 1, 1), variables=["von_mises", "pressure"]),
+            "same points",
+        ),
+        (lambda dataset: analysis.in_plane(dataset), "exactly one"),
+        (lambda dataset: analysis.in_plane(dataset, x=0.1, y=0.1), "exactly one"),
+        (lambda dataset: analysis.in_plane(dataset, z=0.1, variables="pressure"), "fields along z"),
+        (lambda dataset: analysis.in_plane(dataset, y="middle"), "y = 'middle'"),
+        (lambda dataset: analysis.in_plane(dataset, y=-0.5), "y = -0.5"),
     ],
 )
 def test_invalid_line_or_plane_raises(call, message: str) -> None:

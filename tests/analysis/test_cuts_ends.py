@@ -23,13 +23,13 @@ def flush_result(request: pytest.FixtureRequest) -> xr.Dataset:
     return solve(Case(body=body, roller=ROLLER, max_pressure=1.5e9, **end_argument), accuracy=0.1, stresses=False)
 
 
-def compute_end_values(selected: xr.Dataset) -> list[float]:
-    return [float(value) for value in analysis.edge_pressure(selected).values()]
+def compute_end_values(selected_result: xr.Dataset) -> list[float]:
+    return [float(value) for value in analysis.edge_pressure(selected_result).values()]
 
 
-@pytest.mark.parametrize("with_attributes", [True, False])
-def test_edge_pressure_of_half_contact_has_one_end(flush_result: xr.Dataset, with_attributes: bool) -> None:
-    contact = flush_result if with_attributes else flush_result.drop_attrs(deep=False)
+@pytest.mark.parametrize("has_attributes", [True, False])
+def test_edge_pressure_of_half_contact_has_one_end(flush_result: xr.Dataset, has_attributes: bool) -> None:
+    contact = flush_result if has_attributes else flush_result.drop_attrs(deep=False)
     mid_column = flush_result.sizes["x"] // 2
     first_pressure, last_pressure = compute_end_values(contact)
     assert first_pressure > 0
@@ -39,7 +39,7 @@ def test_edge_pressure_of_half_contact_has_one_end(flush_result: xr.Dataset, wit
     )
     # The end of a body with loaded columns only is unknown if the result contains no case.
     is_end_loaded = bool((flush_result["pressure"].isel(x=-1) > 0).any())
-    expected = last_pressure if with_attributes or not is_end_loaded else np.nan
+    expected = last_pressure if has_attributes or not is_end_loaded else np.nan
     assert compute_end_values(contact.isel(x=slice(mid_column, None))) == pytest.approx([np.nan, expected], nan_ok=True)
     assert np.isnan(compute_end_values(contact.isel(x=slice(mid_column - 5, mid_column + 5)))).all()
 
@@ -52,9 +52,9 @@ def test_edge_pressure_of_every_other_cell_is_known(flush_result: xr.Dataset) ->
 def test_contact_results_in_megapascals_are_equal(flush_result: xr.Dataset) -> None:
     result_in_mpa = flush_result.assign(pressure=(1e-6 * flush_result["pressure"]).assign_attrs(units="MPa"))
     assert compute_end_values(result_in_mpa) == pytest.approx(compute_end_values(flush_result))
-    converted = analysis.contact_results(result_in_mpa)
+    converted_result = analysis.contact_results(result_in_mpa)
     for name, value in analysis.contact_results(flush_result).items():
-        assert float(converted[name]) == pytest.approx(float(value)), name
+        assert float(converted_result[name]) == pytest.approx(float(value)), name
 
 
 def test_peak_of_cut_contact_equals_largest_cell_pressure(flush_result: xr.Dataset) -> None:

@@ -86,10 +86,10 @@ def test_prescribed_approach_or_position_equals_case_of_its_load(change) -> None
 
 def test_joined_results_are_compared_by_swept_value(result: xr.Dataset) -> None:
     joined_dataset = xr.concat([result, result], xr.Variable("friction", [0.05, 0.1]))
-    selected = joined_dataset.sel(friction=0.1)
-    check_solved_for(selected, replace(CASE, friction=0.1))
+    selected_dataset = joined_dataset.sel(friction=0.1)
+    check_solved_for(selected_dataset, replace(CASE, friction=0.1))
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*friction = 0.05; .*drop its attribute"):
-        check_solved_for(selected, CASE)
+        check_solved_for(selected_dataset, CASE)
 
 
 class UserProfile:

@@ -48,12 +48,12 @@ def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
 def test_coarsened_grid_keeps_alternate_edges(ratios: list[float]) -> None:
     """Coarsened cells may differ by more than the limit of given cells."""
     grid = Grid.from_edges(compute_edges(ratios), Y_RANGE, 4)
-    coarsened = grid.coarsened()
-    assert coarsened.cells_y == 2
-    assert coarsened.x_range == grid.x_range
+    coarse_grid = grid.coarsened()
+    assert coarse_grid.cells_y == 2
+    assert coarse_grid.x_range == grid.x_range
     if not grid.uniform:
-        assert set(coarsened.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
-        assert float(coarsened.widths.sum()) == pytest.approx(float(grid.widths.sum()))
+        assert set(coarse_grid.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
+        assert float(coarse_grid.widths.sum()) == pytest.approx(float(grid.widths.sum()))
 
 
 def test_equal_widths_make_a_uniform_grid() -> None:

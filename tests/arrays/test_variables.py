@@ -346,8 +346,8 @@ def test_derived_quantity_labels() -> None:
     over_a = specification("x_field_over_a", coordinate=True)
     assert over_a is not None
     assert (over_a.dims, over_a.symbol) == (("x_field",), "x/a")
-    without_symbol = variable_of("stick_over_a", {})
-    assert (without_symbol.symbol, without_symbol.long_name) == ("", "whether the surfaces stick over a")
+    text_without_symbol = variable_of("stick_over_a", {})
+    assert (text_without_symbol.symbol, text_without_symbol.long_name) == ("", "whether the surfaces stick over a")
 
 
 @pytest.mark.parametrize(

@@ -110,19 +110,21 @@ def test_yield_stress_over_depth_is_converted() -> None:
 
 
 def test_converted_variable_has_si_units() -> None:
-    converted = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
-    assert (converted.attrs["units"], converted["x"].attrs["units"]) == ("m", "m")
-    xr.testing.assert_identical(in_si("gap", converted, "m"), converted)
+    converted_gap = in_si(
+        "gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m"
+    )
+    assert (converted_gap.attrs["units"], converted_gap["x"].attrs["units"]) == ("m", "m")
+    xr.testing.assert_identical(in_si("gap", converted_gap, "m"), converted_gap)
 
 
 def test_dataset_positions_are_converted() -> None:
     position = ("x", [0.0, 2.0], {"units": "mm"})
     pressure = xr.DataArray([1.0, 2.0], {"x": position}, "x", attrs={"units": "GPa"})
     dataset = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
-    converted = require_in_si(dataset, "pressure")
-    assert (converted.pressure.values.tolist(), converted.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
-    assert (converted.pressure.attrs["units"], converted.x.attrs["units"]) == ("Pa", "m")
-    assert require_in_si(converted, "pressure") is converted
+    converted_gap = require_in_si(dataset, "pressure")
+    assert (converted_gap.pressure.values.tolist(), converted_gap.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
+    assert (converted_gap.pressure.attrs["units"], converted_gap.x.attrs["units"]) == ("Pa", "m")
+    assert require_in_si(converted_gap, "pressure") is converted_gap
     for invalid_unit, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
         with pytest.raises(InvalidInputError, match=message):
             require_in_si(
@@ -142,8 +144,8 @@ def test_inputs_of_contact_law_and_measured_profile_are_converted() -> None:
     np.testing.assert_allclose(law.table["tilt"], 1e-3 * tilts)
     np.testing.assert_allclose(law.table["approach"], 1e-6 * approaches)
     x = xr.DataArray(np.linspace(0.0, 0.3, 6), dims="x", attrs={"units": "mm"})
-    measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
-    assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
+    measured_profile = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
+    assert measured_profile == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
 
 
 def make_lazy_array(value: float) -> da.Array:

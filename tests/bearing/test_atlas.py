@@ -10,7 +10,7 @@ import contactstudy as cs
 
 RADIUS, PRESSURE = 8e-3, 1.3e9
 GROUPS = {"length_over_a": 45.0, "e_over_a": 0.8, "crown": 0.2}
-TILTED = GROUPS | {"tilt_ratio": 0.6, "poisson": 0.25}
+TILTED_GROUPS = GROUPS | {"tilt_ratio": 0.6, "poisson": 0.25}
 
 
 def compute_material_and_scales(groups: dict[str, float]) -> tuple[cs.Material, float, float]:
@@ -35,7 +35,7 @@ def solve_groups(groups: dict[str, float], load_factor: float = 1.0, **options: 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
+@pytest.mark.parametrize("groups", [GROUPS, TILTED_GROUPS], ids=["parallel", "tilted"])
 def test_atlas_errors_cover_a_solved_roller(groups) -> None:
     contact, result = solve_groups(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)
     _, half_width, length = compute_material_and_scales(groups)
@@ -50,7 +50,7 @@ def test_atlas_errors_cover_a_solved_roller(groups) -> None:
         assert abs(float(result[name] - value)) <= float(result[f"{name}_error"]), name
 
 
-@pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
+@pytest.mark.parametrize("groups", [GROUPS, TILTED_GROUPS], ids=["parallel", "tilted"])
 def test_atlas_stiffness_equals_the_slope_of_loads(groups) -> None:
     low_load_result, high_load_result = (
         solve_groups(groups, 0.95, stresses=False),

@@ -44,18 +44,18 @@ def test_stiffness_equals_difference_quotient() -> None:
     spline = EnergySpline.fit(NODES)
     delta, theta, step = 2.2e-6, 1.7e-4, 1e-4
     motion = spline(np.array(delta), np.array(theta))
-    upper, lower = (spline(np.array(delta * (1 + sign * step)), np.array(theta)) for sign in (1, -1))
-    assert float(upper.normal_load - lower.normal_load) / (2 * step * delta) == pytest.approx(
+    upper_nodes, lower_nodes = (spline(np.array(delta * (1 + sign * step)), np.array(theta)) for sign in (1, -1))
+    assert float(upper_nodes.normal_load - lower_nodes.normal_load) / (2 * step * delta) == pytest.approx(
         float(motion.normal_stiffness), rel=1e-5
     )
-    assert float(upper.moment - lower.moment) / (2 * step * delta) == pytest.approx(
+    assert float(upper_nodes.moment - lower_nodes.moment) / (2 * step * delta) == pytest.approx(
         float(motion.coupling_stiffness), rel=1e-5
     )
-    upper, lower = (spline(np.array(delta), np.array(theta * (1 + sign * step))) for sign in (1, -1))
-    assert float(upper.normal_load - lower.normal_load) / (2 * step * theta) == pytest.approx(
+    upper_nodes, lower_nodes = (spline(np.array(delta), np.array(theta * (1 + sign * step))) for sign in (1, -1))
+    assert float(upper_nodes.normal_load - lower_nodes.normal_load) / (2 * step * theta) == pytest.approx(
         float(motion.coupling_stiffness), rel=1e-5
     )
-    assert float(upper.moment - lower.moment) / (2 * step * theta) == pytest.approx(
+    assert float(upper_nodes.moment - lower_nodes.moment) / (2 * step * theta) == pytest.approx(
         float(motion.tilting_stiffness), rel=1e-5
     )
 

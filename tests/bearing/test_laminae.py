@@ -73,12 +73,12 @@ def test_risk_is_independent_of_laminae(uniform_contact: xr.Dataset) -> None:
 
 def test_free_ends_lower_the_outermost_riser() -> None:
     roller = Roller(radius=5e-3, length=0.5e-3, profile=DESIGN)
-    flush = FiniteLengthSpace(length=0.5e-3, material=STEEL)
+    flush_body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     end_risers = [
         float(
             lamina_factors(solve(Case(body=body, roller=roller, load=70.0, tilt=2e-4), stresses=False)).stress_riser[-1]
         )
-        for body in (HalfSpace(material=STEEL), flush)
+        for body in (HalfSpace(material=STEEL), flush_body)
     ]
     assert end_risers[1] < 0.8 * end_risers[0]
 

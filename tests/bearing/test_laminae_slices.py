@@ -80,14 +80,14 @@ def test_opposite_tilts_mirror_slice_loads(tilt: float) -> None:
 
 
 def test_edge_factor_equals_standard() -> None:
-    without_riser, with_riser = slice_model(CASE, slices=30), slice_model(CASE, slices=30, edge_riser=True)
-    factor = without_riser["edge_factor"].values
+    model_without_riser, model_with_riser = slice_model(CASE, slices=30), slice_model(CASE, slices=30, edge_riser=True)
+    factor = model_without_riser["edge_factor"].values
     np.testing.assert_allclose(factor, factor[::-1])
     assert factor[0] == pytest.approx(1 - 0.01 / np.log(1.985 / 2))
     assert factor[0] == pytest.approx(2.328, abs=1e-3)
     assert 1.0 < factor[14] < 1.004
-    np.testing.assert_allclose(with_riser["pressure"], without_riser["pressure"] * np.sqrt(factor))
-    np.testing.assert_array_equal(with_riser["load_per_length"], without_riser["load_per_length"])
+    np.testing.assert_allclose(model_with_riser["pressure"], model_without_riser["pressure"] * np.sqrt(factor))
+    np.testing.assert_array_equal(model_with_riser["load_per_length"], model_without_riser["load_per_length"])
     assert slice_model(CASE, slices=31)["edge_factor"][15] == 1.0
 
 

@@ -112,19 +112,19 @@ def test_variables_of_the_law_have_units(short_law: ContactLaw) -> None:
 
 
 def test_default_approaches_include_case_load(short_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    recorded = {}
+    recorded_arguments = {}
 
     def record_nodes(solver, approaches, tilts):
-        recorded["approaches"] = approaches
+        recorded_arguments["approaches"] = approaches
         raise InvalidInputError("stop", 0, "here")
 
     monkeypatch.setattr("contactstudy.bearing.tabulation.solve_nodes", record_nodes)
     with pytest.raises(InvalidInputError, match="stop"):
         contact_law(short_case, np.linspace(-1e-3, 1e-3, 5), accuracy=0.1)
     approach_at_load = float(solve(short_case, stresses=False, accuracy=0.1).approach)
-    assert recorded["approaches"][0] < 0.1 * approach_at_load
-    assert approach_at_load < recorded["approaches"][-1] < 1.6 * approach_at_load
-    assert recorded["approaches"].size == 8
+    assert recorded_arguments["approaches"][0] < 0.1 * approach_at_load
+    assert approach_at_load < recorded_arguments["approaches"][-1] < 1.6 * approach_at_load
+    assert recorded_arguments["approaches"].size == 8
 
 
 @pytest.mark.parametrize(

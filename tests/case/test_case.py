@@ -33,10 +33,10 @@ BODY = FiniteLengthSpace(length=10.2e-3, material=STEEL)
 
 @given(st.floats(0.5e9, 3e9))
 def test_load_and_pressure_are_equivalent(pressure: float) -> None:
-    by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
-    by_load = Case(body=BODY, roller=ROLLER, load=by_pressure.normal_load)
-    assert by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
-    assert by_load.hertz_half_width == pytest.approx(by_pressure.hertz_half_width, rel=1e-12)
+    case_by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
+    case_by_load = Case(body=BODY, roller=ROLLER, load=case_by_pressure.normal_load)
+    assert case_by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
+    assert case_by_load.hertz_half_width == pytest.approx(case_by_pressure.hertz_half_width, rel=1e-12)
 
 
 def test_roller_is_centred_by_default() -> None:

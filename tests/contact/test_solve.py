@@ -106,26 +106,28 @@ def test_pressure_converges_with_cells(short_body: FiniteLengthSpace, cylinder_g
 
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
-    uncoupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
-    coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
-    assert np.allclose(uncoupled["traction_y"], 0.4 * uncoupled["pressure"])
+    uncoupled_contact = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
+    coupled_contact = solve_contact(
+        short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True)
+    )
+    assert np.allclose(uncoupled_contact["traction_y"], 0.4 * uncoupled_contact["pressure"])
 
-    def select_centre(contact: xr.Dataset) -> float:
+    def compute_pressure_centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
 
-    assert abs(select_centre(uncoupled)) < 1e-6
+    assert abs(compute_pressure_centre(uncoupled_contact)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
-    assert -0.2 < select_centre(coupled) < -0.02
-    assert bool(coupled["converged"])
-    assert float(coupled["penetration_error"]) < 1e-6
+    assert -0.2 < compute_pressure_centre(coupled_contact) < -0.02
+    assert bool(coupled_contact["converged"])
+    assert float(coupled_contact["penetration_error"]) < 1e-6
 
 
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
     gap = make_sphere_gap(48)
-    uncoupled = solve_contact(body, gap, load=4 / 3, friction=0.3)
-    coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
-    assert np.abs(uncoupled["pressure"] - coupled["pressure"]).max() < 1e-5
+    uncoupled_contact = solve_contact(body, gap, load=4 / 3, friction=0.3)
+    coupled_contact = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
+    assert np.abs(uncoupled_contact["pressure"] - coupled_contact["pressure"]).max() < 1e-5
 
 
 def test_early_stop_warns_and_is_not_converged(half_space: HalfSpace) -> None:
@@ -144,10 +146,10 @@ def test_contact_at_window_edge_raises_error(
 
 
 def solve_with_settings(
-    coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object
+    coupled_contact: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object
 ) -> None:
     """Contact with settings and arguments given as keywords."""
-    settings = ContactSettings(coupled=coupled, tolerance=tolerance, max_iterations=max_iterations)
+    settings = ContactSettings(coupled=coupled_contact, tolerance=tolerance, max_iterations=max_iterations)
     solve_contact(**arguments, settings=settings)  # type: ignore[arg-type]
 
 
@@ -225,8 +227,8 @@ def test_too_many_cells_raise_error_before_allocation() -> None:
 @pytest.mark.parametrize("poisson", [0.0, 0.49])
 def test_strongly_coupled_contact_meets_tolerance(poisson: float, cylinder_gap) -> None:
     body = FiniteLengthSpace(material=Material(1.0, poisson), length=8.0)
-    coupled = solve_contact(
+    coupled_contact = solve_contact(
         body, cylinder_gap(8.0, (32, 48)), load=8 * LINE_LOAD, friction=1.0, settings=ContactSettings(coupled=True)
     )
-    assert bool(coupled["converged"])
-    assert float(coupled["penetration_error"]) <= 1e-6
+    assert bool(coupled_contact["converged"])
+    assert float(coupled_contact["penetration_error"]) <= 1e-6

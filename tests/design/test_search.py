@@ -125,7 +125,7 @@ def test_optimum_on_a_bound_warns(install_measure) -> None:
     assert result.at_bound.values.tolist() == [True]
 
 
-def test_error_of_measure_function_is_returned_or_accuracy(install_measure) -> None:
+def test_error_of_measure_function_defaults_to_accuracy(install_measure) -> None:
     install_measure(lambda drop, k1, case: 1.0 + abs(case.tilt))
     pressures = (1e9, 2e9)
     cases = [replace(CASE, max_pressure=pressure, tilt=tilt) for pressure in pressures for tilt in (0.0, 1e-3)]

@@ -69,7 +69,7 @@ def test_names_in_symbol_table_exist_in_code() -> None:
     rows = re.findall(
         r"^\| [^|]*\$[^|]*\| ([^|]*) \|", (ROOT / "docs" / "explanation" / "symbols.md").read_text(), re.M
     )
-    quoted = chain.from_iterable(re.findall(r"`([^`]+)`", row) for row in rows)
-    words = set(chain.from_iterable(re.findall(r"[A-Za-z_]\w*", name) for name in quoted))
+    quoted_texts = chain.from_iterable(re.findall(r"`([^`]+)`", row) for row in rows)
+    words = set(chain.from_iterable(re.findall(r"[A-Za-z_]\w*", name) for name in quoted_texts))
     assert len(words) > 50
     assert words - list_identifiers() == set()

@@ -78,9 +78,9 @@ def test_second_end_mirrors_first_end(make_rectangle_body) -> None:
     second_body, mirrored_strain = make_rectangle_body((0.0, 2.0), (1.2, 1.8), (0.1, 0.6))
     signs = np.array([1, 1, 1, -1, -1, 1.0])[:, None, None]
     x, z = np.array([0.1, 0.51, 1.3]), np.array([0.21, 0.7])
-    observed = signs * second_body.solve(signs * mirrored_strain).stresses(2 - x, z)
+    second_stress = signs * second_body.solve(signs * mirrored_strain).stresses(2 - x, z)
     expected = first_body.solve(strain).stresses(x, z)
-    assert np.abs(observed - expected).max() < 1e-7 * np.abs(expected).max()
+    assert np.abs(second_stress - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 def test_residual_stress_is_in_equilibrium_with_free_faces(make_rectangle_body) -> None:
@@ -188,13 +188,13 @@ def test_surface_displacement_is_reciprocal_to_eigenstrain() -> None:
     node, weight = np.polynomial.legendre.leggauss(6)
     node_x, node_z, node_weight = 0.1 * node[:, None], 1 + 0.1 * node, 0.01 * weight[:, None] * weight
     for position, computed, computed_y in zip(x, displacement, displacement_y, strict=True):
-        distance_x, squared = node_x - position, (node_x - position) ** 2 + node_z**2
-        xx, zz, xz = (-2 / np.pi * distance_x**i * node_z ** (3 - i) / squared**2 for i in (2, 0, 1))
+        distance_x, squared_distance = node_x - position, (node_x - position) ** 2 + node_z**2
+        xx, zz, xz = (-2 / np.pi * distance_x**i * node_z ** (3 - i) / squared_distance**2 for i in (2, 0, 1))
         scale = 0.04 * np.abs(COMPONENTS).max() * 2 / np.pi
         work = COMPONENTS[0] * xx + COMPONENTS[2] * zz + 2 * COMPONENTS[4] * xz + COMPONENTS[1] * 0.3 * (xx + zz)
         assert computed == pytest.approx(float((work * node_weight).sum()), abs=2e-3 * scale)
         # A unit force along y: antiplane, t_xy = -x' / (pi r^2), t_yz = -z / (pi r^2).
-        antiplane_kernel = -2 * (COMPONENTS[3] * distance_x + COMPONENTS[5] * node_z) / (np.pi * squared)
+        antiplane_kernel = -2 * (COMPONENTS[3] * distance_x + COMPONENTS[5] * node_z) / (np.pi * squared_distance)
         assert computed_y == pytest.approx(float((antiplane_kernel * node_weight).sum()), abs=2e-3 * scale)
 
 
@@ -207,8 +207,8 @@ def test_cell_averages_match_stresses(make_rectangle_body) -> None:
         for edges in (body.x_edges, body.z_edges)
     )
     stress = solution.stresses(x, z).reshape(6, body.x_edges.size - 1, 8, body.z_edges.size - 1, 8)
-    averaged = np.einsum("cipjq,p,q->cij", stress, weight, weight) / 4
-    assert np.allclose(solution.cell_averages(), averaged, atol=1e-10)
+    mean_stress = np.einsum("cipjq,p,q->cij", stress, weight, weight) / 4
+    assert np.allclose(solution.cell_averages(), mean_stress, atol=1e-10)
 
 
 def test_work_is_symmetric_and_negative_on_own_stress(make_rectangle_body) -> None:

@@ -18,9 +18,9 @@ def cycle() -> Callable[..., xr.Dataset]:
     def make_history(**components: object) -> xr.Dataset:
         values = {name: np.asarray(value, dtype=float) for name, value in components.items()}
         count = next(iter(values.values())).size
-        zero = np.zeros(count)
+        zeros = np.zeros(count)
         y = np.linspace(-1, 1, count)
-        return xr.Dataset({name: ("y", values.get(name, zero)) for name in STRESSES}, coords={"y": y})
+        return xr.Dataset({name: ("y", values.get(name, zeros)) for name in STRESSES}, coords={"y": y})
 
     return make_history
 

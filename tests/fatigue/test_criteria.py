@@ -85,10 +85,10 @@ def test_findley_plane_has_largest_damage(history: np.ndarray) -> None:
 
 def test_refinement_rotates_about_all_axes() -> None:
     frame = np.array([[[0.0, 0, 1], [1.0, 0, 0]]])
-    rotated = _rotate_frames(frame, np.array([0.1]))[0]
-    assert len({tuple(np.round(stress.ravel(), 6)) for stress in rotated}) == 15
-    assert np.allclose(rotated[0], frame[0])
-    assert np.allclose(np.einsum("kij,klj->kil", rotated, rotated), np.eye(2))
+    rotated_frame = _rotate_frames(frame, np.array([0.1]))[0]
+    assert len({tuple(np.round(stress.ravel(), 6)) for stress in rotated_frame}) == 15
+    assert np.allclose(rotated_frame[0], frame[0])
+    assert np.allclose(np.einsum("kij,klj->kil", rotated_frame, rotated_frame), np.eye(2))
 
 
 @settings(max_examples=10)
@@ -99,13 +99,13 @@ def test_criteria_do_not_depend_on_axes(history: np.ndarray, angle: float) -> No
     rotation = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]) @ np.array(
         [[1, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]]
     )
-    rotated = rotation @ tensor @ rotation.T
+    rotated_frame = rotation @ tensor @ rotation.T
     indices = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     datasets = [
         xr.Dataset(
             {name: ("y", stress[:, i, j]) for name, (i, j) in zip(STRESSES, indices, strict=True)}, {"y": range(9)}
         )
-        for stress in (tensor, rotated)
+        for stress in (tensor, rotated_frame)
     ]
     for criterion, tolerance in ((fatigue.dang_van, 1e-7), (fatigue.crossland, 1e-7), (fatigue.findley, 2e-2)):
         original_value, rotated_value = (float(criterion(stress, LIMITS)[criterion.__name__]) for stress in datasets)
@@ -151,10 +151,10 @@ def test_padded_lazy_study_equals_single_cases(criterion, case_result: xr.Datase
     case_result = case_result.isel(x_field=[0, 3], z=[2, 3])
     shorter_case = case_result.isel(y_field=slice(2, 15))
     case_stresses = [case_stress[list(STRESSES)].reset_coords(drop=True) for case_stress in (case_result, shorter_case)]
-    padded = xr.concat(case_stresses, "case", join="outer").chunk(case=1)
+    padded_stresses = xr.concat(case_stresses, "case", join="outer").chunk(case=1)
     limits = FatigueLimits(bending=700e6, torsion=450e6)
     name = criterion.__name__
-    padded_result = criterion(padded, limits)[name]
+    padded_result = criterion(padded_stresses, limits)[name]
     assert padded_result.chunks is not None
     for case_index, case_stress in enumerate(case_stresses):
         single_result = criterion(case_stress, limits)[name]

@@ -233,8 +233,8 @@ def test_point_values_are_marked_not_estimated(strip_result) -> None:
     )
     for name in ("risk_density", "shear_amplitude", "shear_depth", "mean_depth"):
         assert computed[name].attrs[ERROR_KIND] == NOT_ESTIMATED, name
-    without_error = fatigue.lundberg_palmgren(result).drop_vars("risk_error")
-    assert fatigue.relative_life(without_error, without_error).attrs[ERROR_KIND] == NOT_ESTIMATED
+    life_without_error = fatigue.lundberg_palmgren(result).drop_vars("risk_error")
+    assert fatigue.relative_life(life_without_error, life_without_error).attrs[ERROR_KIND] == NOT_ESTIMATED
 
 
 @pytest.mark.parametrize("count", [1, 2])

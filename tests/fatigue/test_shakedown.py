@@ -59,12 +59,12 @@ def test_shakedown_stress_on_surface_equals_closed_form(line_contact, friction: 
     pressure = np.sqrt(1 - y**2)
     zz, yy, shear = -pressure, -pressure - 2 * friction * y, friction * pressure
     xx = 0.3 * (yy + zz)
-    squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * shear**2
+    squared_stress = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * shear**2
     surface_result = fatigue.shakedown(line_contact(friction)).isel(z=0)
-    assert float(surface_result["first_yield_stress"]) == pytest.approx(np.sqrt(squared.max() / 3), rel=1e-4)
+    assert float(surface_result["first_yield_stress"]) == pytest.approx(np.sqrt(squared_stress.max() / 3), rel=1e-4)
 
     def max_stress(rho: float) -> float:
-        return float(np.sqrt((squared + 2 * rho * (yy - 0.5 * (xx + zz)) + rho**2).max() / 3))
+        return float(np.sqrt((squared_stress + 2 * rho * (yy - 0.5 * (xx + zz)) + rho**2).max() / 3))
 
     minimum = optimize.minimize_scalar(max_stress, bounds=(-2, 2), options={"xatol": 1e-9}).fun
     assert float(surface_result["shakedown_stress"]) == pytest.approx(minimum, rel=2e-4)

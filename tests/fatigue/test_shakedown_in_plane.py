@@ -138,8 +138,8 @@ def test_flush_roller_satisfies_melan(short_body, strip_pressure) -> None:
     # The history with the residual stress yields nowhere at k.
     total_stress = stress.assign({name: stress[name] + value for name, value in residual.items()})
     xx, yy, zz, xy, xz, yz = (total_stress[name] for name in STRESSES)
-    squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    max_stress = np.sqrt(squared.max("y") / 3)
+    squared_stress = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
+    max_stress = np.sqrt(squared_stress.max("y") / 3)
     assert (max_stress <= result["shakedown_stress"] * (1 + 1e-6)).all()
     assert float(max_stress.max()) == pytest.approx(peak_stress, rel=1e-6)
 

@@ -22,8 +22,8 @@ def undisturbed() -> xr.Dataset:
 def test_table_replaces_previous_table(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
-    for passed in (1, 2):
-        write_table(page, [Row("kill", 2, passed, "all")])
+    for passed_trials in (1, 2):
+        write_table(page, [Row("kill", 2, passed_trials, "all")])
     text = page.read_text()
     assert text.startswith("before\n\n")
     assert text.endswith("\n\nafter\n")

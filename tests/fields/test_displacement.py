@@ -141,5 +141,5 @@ def test_influence_on_a_plane_sums_to_the_displacement() -> None:
     for load in Load:
         points = Points(x, np.zeros(1), np.array([0.8]))
         expected = displacement_under(body, {load: TopLoad(cells)}, grid, points)[2, :, 0, 0]
-        summed = np.tensordot(normal_influence(body, grid, load, x, 0.8), cells, axes=2)
-        np.testing.assert_allclose(summed, expected, atol=1e-5 * np.abs(expected).max())
+        summed_influence = np.tensordot(normal_influence(body, grid, load, x, 0.8), cells, axes=2)
+        np.testing.assert_allclose(summed_influence, expected, atol=1e-5 * np.abs(expected).max())

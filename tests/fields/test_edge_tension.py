@@ -66,9 +66,9 @@ def test_contact_without_sliding_has_no_edge_tension() -> None:
     with pytest.raises(InvalidInputError, match="without friction"):
         edge_tension(solve(case, stresses=False, accuracy=0.1))
     motion = Rolling(longitudinal_creepage=1e-3)
-    rolling = Case(body=case.body, roller=case.roller, max_pressure=P0, friction=0.3, motion=motion)
+    rolling_case = Case(body=case.body, roller=case.roller, max_pressure=P0, friction=0.3, motion=motion)
     with pytest.raises(InvalidInputError, match="stick and slip"):
-        edge_tension(solve(rolling, choose_grid(rolling, cells_x=3, cells_y=8), stresses=False))
+        edge_tension(solve(rolling_case, choose_grid(rolling_case, cells_x=3, cells_y=8), stresses=False))
 
 
 def test_study_contains_largest_tension(tmp_path) -> None:

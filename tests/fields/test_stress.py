@@ -156,8 +156,8 @@ def test_loads_on_different_cells_are_additive_between_free_ends(inside_cells: s
     """The positions on the faces follow from the grid, not from the loaded cells."""
     body = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
     grid = Grid(x_range=(0.0, 10.0), y_range=(-2.0, 2.0), cells_x=40, cells_y=16)
-    squared = 1 - ((grid.x[:, None] - 5) / 3) ** 2 - grid.y**2
-    pressure = xr.DataArray(np.sqrt(np.maximum(squared, 0.0)), {"x": grid.x, "y": grid.y}, ("x", "y"))
+    squared_pressure = 1 - ((grid.x[:, None] - 5) / 3) ** 2 - grid.y**2
+    pressure = xr.DataArray(np.sqrt(np.maximum(squared_pressure, 0.0)), {"x": grid.x, "y": grid.y}, ("x", "y"))
     random_pressure = pressure.copy(data=np.random.default_rng(0).random(grid.shape))
     cells = {"inside_cells": pressure if inside_cells == "pressure" else inside_cells}
     pressure_stress, random_stress, sum_stress = (

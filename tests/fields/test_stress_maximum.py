@@ -55,14 +55,14 @@ def test_high_friction_moves_stress_maximum_to_top() -> None:
     computed = find_maximum(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
     radial, hoop = compute_hertz_surface_stress(np.abs(y), 1.0, 1.0, 0.3)
-    hertz_pressure, zero = np.sqrt(1 - y**2), np.zeros_like(y)
-    traction = compute_sliding_surface_stress(zero, y, 1.0, 0.5, 0.3)
+    hertz_pressure, zeros = np.sqrt(1 - y**2), np.zeros_like(y)
+    traction = compute_sliding_surface_stress(zeros, y, 1.0, 0.5, 0.3)
     components = (
         hoop + traction["sigma_xx"],
         radial + traction["sigma_yy"],
         -hertz_pressure,
-        zero,
-        zero,
+        zeros,
+        zeros,
         0.5 * hertz_pressure,
     )
     exact_von_mises = von_mises_of(*components)

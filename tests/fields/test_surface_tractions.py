@@ -131,9 +131,11 @@ def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> No
 
 def test_reflection_reverses_axial_traction() -> None:
     body, load = BODIES["finite length"], make_asymmetric_traction()
-    reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
+    reflected_load = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     displacement = surface_displacement(body, **load_arguments(Load.ALONG_X, load), components="xyz")
-    reflected_displacement = surface_displacement(body, **load_arguments(Load.ALONG_X, reflected), components="xyz")
+    reflected_displacement = surface_displacement(
+        body, **load_arguments(Load.ALONG_X, reflected_load), components="xyz"
+    )
     for axis, sign in (("x", -1), ("y", 1), ("z", 1)):
         name = f"displacement_{axis}"
         assert np.abs(
@@ -175,11 +177,11 @@ def test_long_body_has_axial_displacement_of_half_space() -> None:
 
 def test_mirrored_traction_mirrors_equivalent_loads() -> None:
     load = make_asymmetric_traction()
-    reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
+    reflected_load = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
     computed, reflected_loads = (
         equivalent_loads(body, **load_arguments(Load.ALONG_X, applied_load), z=[0.3, 1.0])
-        for applied_load in (load, reflected)
+        for applied_load in (load, reflected_load)
     )
     max_load = float(np.abs(computed.P_v1).max())
     assert float(np.abs(computed.P_v1 - reflected_loads.P_v2).max()) < 1e-6 * max_load

@@ -45,14 +45,14 @@ def test_radial_return_tangent_equals_stress_derivative() -> None:
     strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE_STRIP)
     rng = np.random.default_rng(2)
     total_strain, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
-    elastic = np.zeros((4, 40))
-    stress, plastic_after, tangent = strip.return_stress(total_strain, plastic, elastic)
+    elastic_stress = np.zeros((4, 40))
+    stress, plastic_after, tangent = strip.return_stress(total_strain, plastic, elastic_stress)
     assert 0 < np.count_nonzero((plastic_after != plastic).any(axis=0)) < 40
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
         stress_forward, stress_backward = (
-            strip.return_stress(total_strain + step_sign * change, plastic, elastic)[0] for step_sign in (1, -1)
+            strip.return_stress(total_strain + step_sign * change, plastic, elastic_stress)[0] for step_sign in (1, -1)
         )
         slope = (stress_forward - stress_backward) / 2e-9 / (2 if component == 3 else 1)
         assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)

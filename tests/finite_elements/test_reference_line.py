@@ -21,14 +21,14 @@ def solve_finite_elements(depths: tuple[float, ...]) -> np.ndarray:
     body = HarmonicBody(*(Line(edges=edges, order=RESOLUTION.order) for edges in mesh), POISSON)
     node, weight = legendre.leggauss(8)
     mid_length = body.x.evaluate([0.5 * LENGTH])[0]
-    along_line, at_depths = body.x.evaluate(0.5 * LENGTH * (1 + node))[0], body.z.evaluate(depths)[0]
+    line_matrix, depth_matrix = body.x.evaluate(0.5 * LENGTH * (1 + node))[0], body.z.evaluate(depths)[0]
     edges = np.array(RESOLUTION.panels, dtype=float)
     gauss_nodes = legendre.leggauss(RESOLUTION.nodes)[0]
     wavenumbers = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (gauss_nodes + 1)).ravel()
     response = []
     for k in wavenumbers:
         displacement = body.solve(float(k), [(Linear(), "z")])[0, 2]
-        line_mean = 0.5 * weight @ (along_line @ (at_depths @ displacement.T).T)
+        line_mean = 0.5 * weight @ (line_matrix @ (depth_matrix @ displacement.T).T)
         response.append(2 * ((mid_length @ (displacement @ body.top))[0] - line_mean))
     responses = np.array(response)
     summed_displacement = np.zeros(len(depths))

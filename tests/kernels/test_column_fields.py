@@ -319,8 +319,8 @@ def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
     cells = make_fine_cells(image_sign=image_sign)
     split_range = split_around(x, cells)
     forces = add_images(cells.far_load, image_sign, cells.extent) * np.diff(cells.edges)[:, None]
-    inserted = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
-    inserted_force = (inserted * np.diff(split_range.inserted)[:, None]).sum(axis=0)
+    inserted_loads = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
+    inserted_force = (inserted_loads * np.diff(split_range.inserted)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)
     assert inserted_force + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
     assert split_range.inserted[0] == cells.edges[split_range.start]
@@ -479,12 +479,12 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, is_folded: b
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, 0.05])
 def test_fields_unfold_from_distances(offset: float) -> None:
-    aligned = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
-    layer = Layer(aligned, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
+    aligned_points = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
+    layer = Layer(aligned_points, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
     offsets = offset + 0.1 * np.arange(-3.0, 5.0)
     values, expected = (np.stack([np.cos(y), np.sin(y)]) for y in (layer.distances, offsets))
-    unfolded = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
-    assert unfolded == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
+    unfolded_field = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
+    assert unfolded_field == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])

@@ -44,7 +44,7 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
     cell_loads = make_decreasing_pressure(grid) if is_shaped else rng.integers(0, 2, grid.shape).astype(np.float64)
     x, y = np.array([0.0, 0.013, 1.7, 3.6]), np.append(np.sort(rng.uniform(-1.5, 1.5, 16)), 30.0)
     z = grid.dy * np.array([0.0, 0.3, 1.0, 2.5, 7.9, 8.0, 30.0])
-    compared = slice(0, None, 4)
+    compared_points = slice(0, None, 4)
     joint_field, *single_fields = (
         half_space_field(
             cell_loads,
@@ -54,10 +54,12 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
             extent=(0.0, 4.0),
             shape=cell_loads if is_shaped else None,
         )
-        for positions in (y, *y[compared, None])
+        for positions in (y, *y[compared_points, None])
     )
     assert LateralAxis(grid, y, 0, 24).offset_count == y.size
-    np.testing.assert_allclose(joint_field[:, :, compared], np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        joint_field[:, :, compared_points], np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6
+    )
 
 
 def make_decreasing_pressure(grid: Grid, half_length: float = 1.7) -> FloatArray:
@@ -251,5 +253,5 @@ def test_influences_sum_to_field(extent: tuple[float, float], load: Load) -> Non
     for influence in (displacement_influence(load, 0.3, extent[1] - extent[0], 30.0), stress_influence(load, 0.3)):
         field = half_space_field(cells, influence, grid, points, extent=extent)[:, :, 0]
         influence_of_cells = half_space_influence(influence, grid, points._replace(y=points.y - grid.y), extent=extent)
-        summed = np.einsum("cxiyz,iy->cxz", influence_of_cells, cells)
-        np.testing.assert_allclose(summed, field, atol=1e-6 * np.abs(field).max())
+        summed_field = np.einsum("cxiyz,iy->cxz", influence_of_cells, cells)
+        np.testing.assert_allclose(summed_field, field, atol=1e-6 * np.abs(field).max())

@@ -30,7 +30,7 @@ from contactstudy.kernels.strips import (
 )
 from contactstudy.overlapping.quadrature import Resolution
 
-WHOLE, ONE_END, TWO_ENDS = (-np.inf, np.inf), (0.0, np.inf), (0.0, 3.0)
+WHOLE_LINE, ONE_END, TWO_ENDS = (-np.inf, np.inf), (0.0, np.inf), (0.0, 3.0)
 STRIPS = [INVERSE, SQUARE_X, GRADIENT_Y, GRADIENT_X, MIXED]
 each_strip = pytest.mark.parametrize("strip", STRIPS, ids=["inverse", "square x", "gradient y", "gradient x", "mixed"])
 
@@ -102,14 +102,14 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 
 @each_strip
 @pytest.mark.parametrize("image_sign", [1, -1])
-@pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
+@pytest.mark.parametrize("extent", [WHOLE_LINE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
 def test_shifted_body_has_equal_influence(strip: Strip, image_sign: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
-    at_origin = compute_influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
+    influence_at_origin = compute_influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
     shifted_influence = compute_influence(
         strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image_sign
     )
-    assert np.abs(shifted_influence - at_origin).max() < 1e-9 * np.abs(at_origin).max()
+    assert np.abs(shifted_influence - influence_at_origin).max() < 1e-9 * np.abs(influence_at_origin).max()
 
 
 @each_strip
@@ -119,7 +119,7 @@ def test_influence_between_columns_is_the_double_integral(
     strip: Strip, observed: int, loaded_column: int, offset: int
 ) -> None:
     dy, cells_y = 0.2, 6
-    kernel = transform_to_offsets(compute_influence(strip, EDGES, dy, cells_y, WHOLE), strip)
+    kernel = transform_to_offsets(compute_influence(strip, EDGES, dy, cells_y, WHOLE_LINE), strip)
     columns = (EDGES[observed], EDGES[observed + 1]), (EDGES[loaded_column], EDGES[loaded_column + 1])
     double_integral = compute_mean_influence(strip, *columns, (offset - 0.5) * dy, (offset + 0.5) * dy)
     assert kernel[offset, observed, loaded_column] == pytest.approx(double_integral, rel=2e-9, abs=1e-12)
@@ -129,7 +129,7 @@ def test_influence_between_columns_is_the_double_integral(
 @each_strip
 def test_image_equals_mirrored_column(strip: Strip, image_sign: int) -> None:
     dy, cells_y, end_x = 0.2, 6, -0.1
-    baseline = transform_to_offsets(compute_influence(strip, EDGES, dy, cells_y, WHOLE), strip)
+    baseline = transform_to_offsets(compute_influence(strip, EDGES, dy, cells_y, WHOLE_LINE), strip)
     reflected_influence = (
         transform_to_offsets(
             compute_influence(strip, EDGES, dy, cells_y, (end_x, np.inf), image_sign=image_sign), strip
@@ -177,7 +177,7 @@ sampled_strips = st.sampled_from(STRIPS)
 @given(edges=draw_increasing_edges(), strip=sampled_strips)
 def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip) -> None:
     """The influence of an odd strip with images of one sign is reciprocal to that with images of the other sign."""
-    for extent in (WHOLE, ONE_END):
+    for extent in (WHOLE_LINE, ONE_END):
         kernel, scaled_kernel = (
             compute_influence(strip, edges, 0.1, 6, extent, image_sign=image_sign) for image_sign in (1, strip.sign_x)
         )
@@ -194,7 +194,7 @@ def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip
 @settings(max_examples=30)
 @given(edges=draw_increasing_edges(), strip=sampled_strips, has_two_ends=st.booleans())
 def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Strip, has_two_ends: bool) -> None:
-    extent = TWO_ENDS if has_two_ends else WHOLE
+    extent = TWO_ENDS if has_two_ends else WHOLE_LINE
     kernel = compute_influence(strip, edges, 0.1, 6, extent, 30.0)
     reversed_influence = compute_influence(strip, 3.0 - edges[::-1], 0.1, 6, extent, 30.0)
     assert np.abs(kernel - strip.sign_x * reversed_influence[:, ::-1, ::-1]).max() < 1e-7 * np.abs(kernel).max()
@@ -203,7 +203,7 @@ def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Stri
 @settings(max_examples=30)
 @given(edges=draw_increasing_edges())
 def test_influence_is_positive_definite(edges: FloatArray) -> None:
-    for matrix in compute_influence(INVERSE, edges, 0.1, 6, WHOLE):
+    for matrix in compute_influence(INVERSE, edges, 0.1, 6, WHOLE_LINE):
         assert np.linalg.eigvalsh(matrix).min() > 0
 
 
@@ -215,7 +215,7 @@ def test_split_columns_sum_to_original_column(
     """The force on a column is distributed in proportion to the widths of its parts; their displacements are
     averaged."""
     split_column %= edges.size - 1
-    extent = TWO_ENDS if has_two_ends else WHOLE
+    extent = TWO_ENDS if has_two_ends else WHOLE_LINE
     split_edges = np.insert(
         edges, split_column + 1, edges[split_column] + 0.3 * (edges[split_column + 1] - edges[split_column])
     )
@@ -234,7 +234,7 @@ def test_split_columns_sum_to_original_column(
 def test_far_expansion_matches_integral(strip: Strip) -> None:
     dy, cells_y = 0.01, 4
     edges = np.array([0.0, 1e-3, 2e-3, 4e-3, 1.0, 1.03])
-    kernel = transform_to_offsets(compute_influence(strip, edges, dy, cells_y, WHOLE), strip)
+    kernel = transform_to_offsets(compute_influence(strip, edges, dy, cells_y, WHOLE_LINE), strip)
     assert edges[4] - edges[3] > FAR_COLUMNS * (edges[5] - edges[4])
     for offset in (0, 2):
         integral = compute_mean_influence(strip, (0.0, 1e-3), (1.0, 1.03), (offset - 0.5) * dy, (offset + 0.5) * dy)
@@ -248,7 +248,7 @@ def test_very_narrow_columns_keep_their_digits() -> None:
     """A column of 1e-5 a lies between wide columns, at 150 a from them."""
     edges = np.concatenate([1e-5 * 2.0 ** np.arange(24), [150.0, 150.0 + 1e-5]])
     edges = np.insert(edges, 0, 0.0)
-    kernel = transform_to_offsets(compute_influence(INVERSE, edges, 0.1, 4, WHOLE), INVERSE)
+    kernel = transform_to_offsets(compute_influence(INVERSE, edges, 0.1, 4, WHOLE_LINE), INVERSE)
     last_column, y = edges.size - 2, (-0.05, 0.05)
     for observed, loaded_column in ((0, 0), (5, 0), (0, last_column), (last_column, last_column)):
         column_pair = (edges[observed], edges[observed + 1]), (edges[loaded_column], edges[loaded_column + 1])

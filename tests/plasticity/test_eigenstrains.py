@@ -43,12 +43,12 @@ def test_cells_reach_the_ends_by_default() -> None:
     x, z = 0.1 + 0.2 * np.arange(10), 0.1 + 0.2 * np.arange(6)
     strain = xr.Dataset({"plastic_strain_xx": (("x", "z"), np.outer(x, z))}, {"x": x, "z": z})
     edges = {"x_edges": np.linspace(0, 2, 11), "z_edges": np.linspace(0, 1.2, 7)}
-    with_edges, without_edges = (
+    result_with_edges, result_without_edges = (
         eigenstrain_stress(body, strain, x=[0.0, 1.05], z=[0.0, 0.65], **options) for options in (edges, {})
     )
-    assert np.allclose(with_edges["sigma_yy"], without_edges["sigma_yy"])
-    assert np.abs(without_edges["sigma_xx"].sel(x=0.0)).max() < 1e-9
-    assert np.abs(without_edges["sigma_zz"].sel(z=0.0)).max() < 1e-9
+    assert np.allclose(result_with_edges["sigma_yy"], result_without_edges["sigma_yy"])
+    assert np.abs(result_without_edges["sigma_xx"].sel(x=0.0)).max() < 1e-9
+    assert np.abs(result_without_edges["sigma_zz"].sel(z=0.0)).max() < 1e-9
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def integrate_rates(
     """Residual stresses xx and yy of one layer, by the rate equations of Prandtl and Reuss in many small steps."""
     modulus = YOUNG / (1 - POISSON**2)
     isotropic, kinematic = hardening
-    strain, accumulated = np.zeros(6), 0.0
+    strain, accumulated_strain = np.zeros(6), 0.0
 
     def compute_residual_stress(plastic: np.ndarray) -> np.ndarray:
         xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
@@ -71,14 +71,14 @@ def integrate_rates(
                 )
                 deviator = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
                 norm = np.sqrt((component_counts * deviator**2).sum())
-                if norm > yield_radius + np.sqrt(2 / 3) * isotropic * accumulated:
+                if norm > yield_radius + np.sqrt(2 / 3) * isotropic * accumulated_strain:
                     # The stress returns along the normal; the body responds to the flow by `residual_of`.
                     normal = deviator / norm
                     slope = -(component_counts * normal * compute_residual_stress(normal)).sum() + 2 / 3 * (
                         kinematic + isotropic
                     )
-                    step = (norm - yield_radius - np.sqrt(2 / 3) * isotropic * accumulated) / slope
-                    strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
+                    step = (norm - yield_radius - np.sqrt(2 / 3) * isotropic * accumulated_strain) / slope
+                    strain, accumulated_strain = strain + step * normal, accumulated_strain + np.sqrt(2 / 3) * step
     return compute_residual_stress(strain)[:2]
 
 

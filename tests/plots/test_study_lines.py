@@ -94,9 +94,9 @@ def test_finite_errors_are_drawn_as_bars() -> None:
 def test_values_without_errors_have_open_markers(lines_of) -> None:
     distances = {"e_over_a": [0.0, 1.0]}
     peaks = xr.DataArray([1e9, 2e9], distances, "e_over_a", attrs={"units": "Pa"})
-    with_errors = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
+    data_with_errors = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
     names = ["peak_von_mises", "peak_von_mises_z", "normal_load"]
-    figure = plots.plot_study_lines(xr.Dataset(with_errors | {"normal_load": peaks}), names, x="e_over_a")
+    figure = plots.plot_study_lines(xr.Dataset(data_with_errors | {"normal_load": peaks}), names, x="e_over_a")
     marker_colors = [line.get_markerfacecolor() for ax in figure.axes for line in lines_of(ax)]
     assert [isinstance(face, str) and face == "white" for face in marker_colors] == [False, True, False]
     (legend,) = figure.legends

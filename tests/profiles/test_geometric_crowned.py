@@ -33,13 +33,15 @@ def test_full_crown_of_large_radius_equals_the_parabola(positions: np.ndarray) -
     )
 
 
-@given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
-def test_arcs_of_a_partial_crown_join_tangentially(straight: float, crown: float, dub: float) -> None:
+@given(straight_length=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), end_length=st.floats(0.1e-3, 1.5e-3))
+def test_arcs_of_a_partial_crown_join_tangentially(straight_length: float, crown: float, end_length: float) -> None:
     """The curvatures are 0, 1/R1, 1/R2: their integral from mid-length is the slope, the slope's integral the drop."""
-    profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
+    profile = PartialCrown(straight_length, crown, end_length, dub_radius=0.02)
     x = np.linspace(0.0, HALF_LENGTH, 4001)
     midpoints = 0.5 * (x[1:] + x[:-1])
-    curvature = np.where(midpoints < straight / 2, 0.0, np.where(midpoints < HALF_LENGTH - dub, 1 / crown, 1 / 0.02))
+    curvature = np.where(
+        midpoints < straight_length / 2, 0.0, np.where(midpoints < HALF_LENGTH - end_length, 1 / crown, 1 / 0.02)
+    )
     sine = np.concatenate([[0.0], np.cumsum(curvature) * (x[1] - x[0])])
     slope = sine / np.sqrt(1 - sine**2)
     drop = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1])) * (x[1] - x[0])])

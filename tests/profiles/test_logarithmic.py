@@ -97,10 +97,10 @@ def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_widt
 @given(st.floats(1e-9, 1e-5))
 def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
     x = HALF_LENGTH * np.linspace(-0.999, 0.999, 41)
-    make_lundberg = Lundberg(amplitude).drop(x, LENGTH)
-    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), make_lundberg, rtol=1e-12)
+    lundberg_drop = Lundberg(amplitude).drop(x, LENGTH)
+    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg_drop, rtol=1e-12)
     deep_profile = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
-    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), make_lundberg, rtol=1e-9, atol=1e-12 * amplitude)
+    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), lundberg_drop, rtol=1e-9, atol=1e-12 * amplitude)
 
 
 def test_fujiwara_and_kawase_equals_paper(positions: np.ndarray) -> None:
@@ -150,11 +150,11 @@ def test_invalid_argument_raises(create, message: str) -> None:
 def test_design_load_gives_the_hertz_pressure(profile_class, parameters: dict[str, float], steel: Material) -> None:
     contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
     load = line_load(PRESSURE, **contact) * 0.8 * LENGTH
-    by_load = profile_class.for_load(load, length=0.8 * LENGTH, **contact, **parameters)
-    by_pressure = profile_class.for_pressure(PRESSURE, **contact, **parameters)
-    assert by_load.amplitude == pytest.approx(by_pressure.amplitude, rel=1e-12)
+    profile_by_load = profile_class.for_load(load, length=0.8 * LENGTH, **contact, **parameters)
+    profile_by_pressure = profile_class.for_pressure(PRESSURE, **contact, **parameters)
+    assert profile_by_load.amplitude == pytest.approx(profile_by_pressure.amplitude, rel=1e-12)
     x = np.linspace(-0.49, 0.49, 11) * LENGTH
-    np.testing.assert_allclose(by_load.drop(x, LENGTH), by_pressure.drop(x, LENGTH), rtol=1e-9)
+    np.testing.assert_allclose(profile_by_load.drop(x, LENGTH), profile_by_pressure.drop(x, LENGTH), rtol=1e-9)
     with pytest.raises(InvalidInputError, match="length = 0"):
         profile_class.for_load(load, length=0, **contact, **parameters)
 

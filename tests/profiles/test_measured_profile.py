@@ -67,12 +67,16 @@ def test_csv_file_may_have_several_separators_and_brackets(tmp_path: Path, separ
 
 def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, positions: np.ndarray) -> None:
     path = write_csv(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
-    uncorrected = Measured.from_file(path)
-    np.testing.assert_allclose(uncorrected.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
-    straight = Measured.from_file(path, remove_tilt=True, remove_offset=True)
-    np.testing.assert_allclose(straight.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13)
-    without_tilt = Measured.from_file(path, remove_tilt=True)
-    np.testing.assert_allclose(np.ptp(np.subtract(without_tilt.drops, straight.drops)), 0.0, atol=1e-18)
+    uncorrected_profile = Measured.from_file(path)
+    np.testing.assert_allclose(uncorrected_profile.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
+    corrected_profile = Measured.from_file(path, remove_tilt=True, remove_offset=True)
+    np.testing.assert_allclose(
+        corrected_profile.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13
+    )
+    profile_without_tilt = Measured.from_file(path, remove_tilt=True)
+    np.testing.assert_allclose(
+        np.ptp(np.subtract(profile_without_tilt.drops, corrected_profile.drops)), 0.0, atol=1e-18
+    )
 
 
 @given(st.lists(st.floats(0.0, 1e-6), min_size=5, max_size=40), st.floats(-0.5, 0.5))
@@ -220,10 +224,10 @@ def test_invalid_netcdf_file_raises(tmp_path: Path) -> None:
         Measured.from_file(write_netcdf(tmp_path, units=("deg", "um")))
     with pytest.raises(InvalidInputError, match="a file with drop or height along x"):
         Measured.from_file(write_netcdf(tmp_path, name="depth"))
-    broken = tmp_path / "broken.nc"
-    broken.write_text("no netCDF")
+    broken_path = tmp_path / "broken.nc"
+    broken_path.write_text("no netCDF")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read"):
-        Measured.from_file(broken)
+        Measured.from_file(broken_path)
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "missing.nc"])
@@ -237,22 +241,22 @@ NOISY = DROP + NOISE - (DROP + NOISE).min()
 
 
 def test_filter_preserves_the_crown_and_reduces_noise() -> None:
-    unfiltered, filtered = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
-    errors = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (unfiltered, filtered)]
+    unfiltered_profile, filtered_profile = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
+    errors = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (unfiltered_profile, filtered_profile)]
     assert np.std(errors[0]) == pytest.approx(0.05e-6, rel=0.2)
     assert np.std(errors[1]) < 0.4 * np.std(errors[0])
-    assert 0.0 <= filtered.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
-    assert "Gaussian filter with cut-off 0.8 mm" in repr(filtered)
-    assert "filter" not in repr(unfiltered)
-    assert pickle.loads(pickle.dumps(filtered)) == filtered != unfiltered
+    assert 0.0 <= filtered_profile.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
+    assert "Gaussian filter with cut-off 0.8 mm" in repr(filtered_profile)
+    assert "filter" not in repr(unfiltered_profile)
+    assert pickle.loads(pickle.dumps(filtered_profile)) == filtered_profile != unfiltered_profile
 
 
 def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
     path = write_csv(tmp_path, drop=DROP + NOISE + 2e-6)
-    from_file = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
-    assert from_file.cutoff == 0.8e-3
+    file_profile = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
+    assert file_profile.cutoff == 0.8e-3
     np.testing.assert_allclose(
-        from_file.drop(X - LENGTH / 2, LENGTH),
+        file_profile.drop(X - LENGTH / 2, LENGTH),
         Measured(X, NOISY, cutoff=0.8e-3).drop(X - LENGTH / 2, LENGTH),
         rtol=1e-5,
         atol=1e-13,
@@ -289,8 +293,8 @@ def test_profile_from_line_and_map_of_instrument_equals_crown(tmp_path: Path, po
 
 def test_rotation_exchanges_the_ends_of_columns(tmp_path: Path) -> None:
     path = write_csv(tmp_path, drop=DROP + 2e-4 * X)
-    rotated = Measured.from_file(path, turn=180)
-    np.testing.assert_allclose(rotated.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
+    rotated_profile = Measured.from_file(path, turn=180)
+    np.testing.assert_allclose(rotated_profile.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
     with pytest.raises(InvalidInputError, match="turn = 90: must be one of 0, 180"):
         Measured.from_file(path, turn=90)
 

@@ -17,9 +17,9 @@ def test_transmission_equals_the_standard(wavelength_ratio: float, is_uneven: bo
     inner_slice = slice(180, -180)  # the slice excludes 0.9 mm on either side
     for phase in (0.0, 1.0):
         sine = np.sin(2 * np.pi * x / (wavelength_ratio * CUTOFF) + phase)
-        filtered = filter_gaussian(x, sine, CUTOFF)
+        filtered_noise = filter_gaussian(x, sine, CUTOFF)
         np.testing.assert_allclose(
-            filtered[inner_slice], 0.5 ** (1 / wavelength_ratio**2) * sine[inner_slice], atol=5e-6
+            filtered_noise[inner_slice], 0.5 ** (1 / wavelength_ratio**2) * sine[inner_slice], atol=5e-6
         )
 
 
@@ -43,9 +43,9 @@ def test_filtered_parabola_shifts_by_the_closed_form() -> None:
 def test_noise_decreases_by_the_closed_form() -> None:
     """The variance of a weighted mean of independent values is ``step / (alpha cutoff sqrt(2))`` inside."""
     noise = np.random.default_rng(0).standard_normal((40, X.size))
-    filtered = np.array([filter_gaussian(X, row, CUTOFF) for row in noise])[:, 300:-300]
+    filtered_noise = np.array([filter_gaussian(X, row, CUTOFF) for row in noise])[:, 300:-300]
     expected = np.sqrt((X[1] - X[0]) / (np.sqrt(np.log(2) / np.pi) * CUTOFF * np.sqrt(2)))
-    assert filtered.std() == pytest.approx(expected, rel=0.05)
+    assert filtered_noise.std() == pytest.approx(expected, rel=0.05)
 
 
 @pytest.mark.parametrize("cutoff", [0.05e-3, 0.8e-3, 11e-3])

@@ -15,10 +15,10 @@ X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
 HEIGHTS = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
 
 
-def assert_heights(measured: Heights, x=X, y=Y, heights=HEIGHTS) -> None:
-    np.testing.assert_allclose(measured.x, x, rtol=1e-12, atol=1e-20)
-    np.testing.assert_allclose(measured.y, y, rtol=1e-12, atol=1e-20)
-    np.testing.assert_allclose(measured.heights, heights, rtol=1e-12)
+def assert_heights(measured_heights: Heights, x=X, y=Y, heights=HEIGHTS) -> None:
+    np.testing.assert_allclose(measured_heights.x, x, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(measured_heights.y, y, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(measured_heights.heights, heights, rtol=1e-12)
 
 
 def test_x3p_surface_has_heights_of_file(tmp_path: Path) -> None:
@@ -38,29 +38,29 @@ def test_x3p_profile_contains_even_and_uneven_points(tmp_path: Path) -> None:
     points = np.stack([uneven_x, np.zeros(5), HEIGHTS[:, 0]], axis=1)
     x3pio.Profile.from_points(points).save(tmp_path / "uneven.x3p")
     for name, x in (("even", X), ("uneven", uneven_x)):
-        measured = read_heights(tmp_path / f"{name}.x3p")
-        assert measured.y is None
-        np.testing.assert_allclose(measured.x, x, atol=1e-20)
-        np.testing.assert_allclose(measured.heights, HEIGHTS[:, 0])
+        measured_heights = read_heights(tmp_path / f"{name}.x3p")
+        assert measured_heights.y is None
+        np.testing.assert_allclose(measured_heights.x, x, atol=1e-20)
+        np.testing.assert_allclose(measured_heights.heights, HEIGHTS[:, 0])
 
 
 def test_rotation_moves_heights_with_their_points() -> None:
     """A point at (x, y) moves to its rotated position with its height."""
-    measured = Heights(X, Y, HEIGHTS)
+    measured_heights = Heights(X, Y, HEIGHTS)
     for turn in (0, 90, 180, 270):
-        rotated = rotate_heights(measured, turn)
+        rotated_heights = rotate_heights(measured_heights, turn)
         angle = np.deg2rad(turn)
         for i, j in ((0, 0), (1, 3), (4, 2)):
             x, y = X[i] - X.mean(), Y[j] - Y.mean()
             position = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
-            nearest = [
+            nearest_heights = [
                 np.abs(axis - axis.mean() - coordinate).argmin()
-                for axis, coordinate in zip(rotated[:2], position, strict=True)
+                for axis, coordinate in zip(rotated_heights[:2], position, strict=True)
             ]
-            assert rotated.heights[tuple(nearest)] == HEIGHTS[i, j]
-        assert (np.diff(rotated.x) > 0).all()
-        assert (np.diff(rotated.y) > 0).all()
-    assert_heights(rotate_heights(rotate_heights(measured, 90, mirror=True), 90, mirror=True))
+            assert rotated_heights.heights[tuple(nearest_heights)] == HEIGHTS[i, j]
+        assert (np.diff(rotated_heights.x) > 0).all()
+        assert (np.diff(rotated_heights.y) > 0).all()
+    assert_heights(rotate_heights(rotate_heights(measured_heights, 90, mirror=True), 90, mirror=True))
 
 
 @pytest.mark.parametrize(("turn", "is_line"), [(45, False), (True, False), ("90", False), (90, True)])

@@ -31,8 +31,8 @@ def test_profilometer_map_in_any_unit_equals_heights(
     for name in ("map.gwy", "map.asc"):
         write = topography.to_gwy if name.endswith("gwy") else topography.to_matrix
         write(str(tmp_path / name))
-        measured = read_heights(tmp_path / name)
-        for values, expected in zip(measured, (X, Y, HEIGHTS), strict=True):
+        measured_heights = read_heights(tmp_path / name)
+        for values, expected in zip(measured_heights, (X, Y, HEIGHTS), strict=True):
             np.testing.assert_allclose(values, expected, rtol=1e-12, atol=1e-20)
 
 
@@ -40,8 +40,8 @@ def test_missing_points_are_nan(package: ModuleType, tmp_path: Path) -> None:
     values = np.ma.masked_array(HEIGHTS, mask=False)
     values.mask[1, 2] = True
     package.Topography(values, (10e-6, 12e-6), unit="m").to_gwy(str(tmp_path / "map.gwy"))
-    measured = read_heights(tmp_path / "map.gwy").heights
-    assert np.argwhere(np.isnan(measured)).tolist() == [[1, 2]]
+    measured_heights = read_heights(tmp_path / "map.gwy").heights
+    assert np.argwhere(np.isnan(measured_heights)).tolist() == [[1, 2]]
 
 
 def test_line_scan_requires_unit(package: ModuleType, tmp_path: Path) -> None:
@@ -50,10 +50,10 @@ def test_line_scan_requires_unit(package: ModuleType, tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match=r"unit of .*scan.xyz = None"):
         read_heights(tmp_path / "scan.xyz")
     package.NonuniformLineScan(1e6 * X, 1e6 * HEIGHTS[:, 0], unit="um").to_netcdf(str(tmp_path / "scan.cdf"))
-    measured = read_heights(tmp_path / "scan.cdf")
-    assert measured.y is None
-    np.testing.assert_allclose(measured.x, X, atol=1e-18)
-    np.testing.assert_allclose(measured.heights, HEIGHTS[:, 0], rtol=1e-9)
+    measured_heights = read_heights(tmp_path / "scan.cdf")
+    assert measured_heights.y is None
+    np.testing.assert_allclose(measured_heights.x, X, atol=1e-18)
+    np.testing.assert_allclose(measured_heights.heights, HEIGHTS[:, 0], rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["broken.plux", "broken.sur", "broken.opd"])

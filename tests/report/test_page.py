@@ -181,7 +181,7 @@ def test_assessment_reason_contains_worst_and_best_case() -> None:
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert pages._verdict(make_converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
     assert pages._verdict(make_converged_rows(0.001, 0.001)) == ("yes", "2 real")
-    runs = list(MALFORMED)
+    runs = list(MALFORMED_ATTRIBUTES)
 
     def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
         values = {"end_pressure_first": 0.0, "end_pressure_last": 0.0, "peak_pressure": 2e9, "peak_pressure_error": 2e8}
@@ -354,7 +354,7 @@ def test_page_of_rolling_case_contains_stick_and_slip(case_result: xr.Dataset) -
     assert "stick everywhere" in Page(report.html(rolling_result.assign(stick=in_contact))).text
 
 
-MALFORMED = (
+MALFORMED_ATTRIBUTES = (
     {"seconds": "many"},
     {"seconds": None, "stages": {"contact": "long"}},
     {"stages": [1], "time": "yesterday"},
@@ -365,7 +365,7 @@ MALFORMED = (
 MALFORMED_SETTINGS = ({"cells": "given"}, {"cells": "given", "tolerance": "x", "accuracy": []}, 5, 5)
 
 
-@pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED, MALFORMED_SETTINGS, strict=True)])
+@pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED_ATTRIBUTES, MALFORMED_SETTINGS, strict=True)])
 def test_page_ignores_malformed_run_and_settings(
     case_result: xr.Dataset, run: dict[str, object], settings: object
 ) -> None:

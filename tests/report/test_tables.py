@@ -165,10 +165,10 @@ def test_assessment_depends_on_certificate(case_result: xr.Dataset) -> None:
         assert find_answer(criterion, **good_case) == "yes", criterion
         assert find_answer(criterion, **bad_case) in ("with care", "no"), criterion
     assert assess(case_result.assign(converged=False)).overall == "no"
-    without_peak = case_result.drop_vars(
+    result_without_peak = case_result.drop_vars(
         [name for name in case_result.data_vars if str(name).startswith("peak_von_mises")]
     )
-    single_depth_result = without_peak.isel(z=[2])
+    single_depth_result = result_without_peak.isel(z=[2])
     assert any("one position along z only" in entry.reason for entry in assess(single_depth_result).criteria)
     assert assess(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
 
@@ -224,9 +224,9 @@ def test_citations_depend_on_inputs_of_study() -> None:
     }
     assert "profile Lundberg" in cited_subjects
     assert "free ends" not in cited_subjects
-    rolling = half_space_study | {"sweep": {"roller_body": ["rigid", "finite-length"]}}
+    elastic_study = half_space_study | {"sweep": {"roller_body": ["rigid", "finite-length"]}}
     assert "free ends" in {
-        subject for subject, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(rolling)})).entries
+        subject for subject, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(elastic_study)})).entries
     }
 
 

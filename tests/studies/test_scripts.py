@@ -69,13 +69,13 @@ def test_regime_map_compares_models_with_exact_ends(regime_errors):
     module = load_script("regime_map")
     full_crown = regime_errors.sel(profile="full crown")
     assert np.isfinite(full_crown["peak_pressure_first"]).all()
-    flush = full_crown.sel(e_over_a=0.0, friction=0.0)
-    by_model = {model: flush.sel(approximation=model) for model in module.MODELS}
-    assert float(by_model["half-space"]["peak_pressure_first"].min()) > 3
-    assert float(by_model["half-space"]["end_load_first"].min()) > 30
-    assert float(np.abs(by_model["single mirror"]["end_load_first"]).max()) < 3
+    flush_results = full_crown.sel(e_over_a=0.0, friction=0.0)
+    model_results = {model: flush_results.sel(approximation=model) for model in module.MODELS}
+    assert float(model_results["half-space"]["peak_pressure_first"].min()) > 3
+    assert float(model_results["half-space"]["end_load_first"].min()) > 30
+    assert float(np.abs(model_results["single mirror"]["end_load_first"]).max()) < 3
     # In the model the body continues beyond the other end and carries less load at this end.
-    assert float(by_model["quarter space"]["end_load_first"].max()) < -10
+    assert float(model_results["quarter space"]["end_load_first"].max()) < -10
     # Friction does not change the pressure.
     for name in ("peak_pressure_first", "end_load_first"):
         np.testing.assert_allclose(full_crown[name].sel(friction=0.3), full_crown[name].sel(friction=0.0), atol=1e-9)
@@ -136,12 +136,12 @@ def test_elastic_roller_is_softer_at_ends():
     result = module.solve_all({"Lundberg": module.PROFILES["Lundberg"]}, 0.1, length, workers=0)
     assert dict(result.sizes) == {"raceway": 2, "profile": 1, "model": 4}
     wide_raceway, flush_raceway = (result.isel(raceway=i, profile=0) for i in (0, 1))
-    elastic, rigid = "both finite", "finite raceway, rigid roller"
+    elastic_model, rigid_model = "both finite", "finite raceway, rigid roller"
     for name in ("end_load", "peak_von_mises"):
-        assert float(wide_raceway[name].sel(model=elastic)) < float(wide_raceway[name].sel(model=rigid))
+        assert float(wide_raceway[name].sel(model=elastic_model)) < float(wide_raceway[name].sel(model=rigid_model))
         # Two bodies with common ends equal a rigid roller on one body of half the stiffness.
-        assert float(flush_raceway[name].sel(model=elastic)) == pytest.approx(
-            float(flush_raceway[name].sel(model=rigid)), rel=2e-3
+        assert float(flush_raceway[name].sel(model=elastic_model)) == pytest.approx(
+            float(flush_raceway[name].sel(model=rigid_model)), rel=2e-3
         )
         first_value, second_value = (
             float(raceway[name].sel(model="half-spaces")) for raceway in (wide_raceway, flush_raceway)
@@ -186,13 +186,15 @@ def edge_results():
 def test_quarter_space_is_softer_at_edge(edge_results):
     module, _, result = edge_results
     sphere_result = result.sel(indenter="sphere")
-    at_equal_approach = sphere_result.sel(condition="depth")
+    equal_approach_result = sphere_result.sel(condition="depth")
     # Solved on cells of a quarter of the size.
     for name, value in (("load", 0.3985), ("contact_area", 0.471), ("peak_pressure", 0.843), ("von_mises", 0.6796)):
-        assert abs(float(at_equal_approach[name].sel(e_over_a=0.0)) - value) <= float(
-            at_equal_approach[f"{name}_error"].sel(e_over_a=0.0)
+        assert abs(float(equal_approach_result[name].sel(e_over_a=0.0)) - value) <= float(
+            equal_approach_result[f"{name}_error"].sel(e_over_a=0.0)
         )
-    assert float(at_equal_approach["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
+    assert float(equal_approach_result["load"].sel(e_over_a=8.0)) == pytest.approx(
+        module.far_from_edge(0.3, 8.0), abs=2e-3
+    )
     stress_ratio = result["von_mises"].sel(e_over_a=0.0) / result["von_mises"].sel(e_over_a=np.inf)
     assert float(stress_ratio.sel(indenter="sphere", condition="load")) == pytest.approx(1.49, abs=0.01)
     assert float(stress_ratio.sel(indenter="cylinder", condition="load")) < 0.95
@@ -202,9 +204,9 @@ def test_quarter_space_is_softer_at_edge(edge_results):
 def test_quarter_space_passes_checks_on_coarse_cells(edge_results):
     module, shapes, _ = edge_results
     rows = module.checks(shapes["sphere"], shapes["cylinder"])
-    *of_sphere, of_short_cylinder = (abs(row.value - row.expected) for row in rows)
-    assert max(of_sphere) < 2e-3
-    assert of_short_cylinder < 0.05
+    *sphere_errors, cylinder_error = (abs(row.value - row.expected) for row in rows)
+    assert max(sphere_errors) < 2e-3
+    assert cylinder_error < 0.05
     assert module.check_table(rows).count("\n") == len(rows) + 1
 
 
@@ -219,9 +221,9 @@ def test_quarter_space_draws_and_tabulates_every_distance(edge_results):
 
 def test_quarter_space_ignores_maximum_at_border(edge_results):
     module, shapes, _ = edge_results
-    shallow = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
+    shallow_shape = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
     with pytest.raises(ValueError, match="border of the points"):
-        module.solve_with_errors(shallow, module.HALF_SPACE, None, ("load",))
+        module.solve_with_errors(shallow_shape, module.HALF_SPACE, None, ("load",))
 
 
 def test_worn_profile_is_flat_at_design_load():

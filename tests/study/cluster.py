@@ -27,10 +27,10 @@ class Cluster(str):
 
 
 @contextlib.contextmanager
-def cluster(folder: Path, workers: int = 2, *, outdated: int = 0) -> Iterator[Cluster]:
+def cluster(folder: Path, workers: int = 2, *, outdated_workers: int = 0) -> Iterator[Cluster]:
     """Start a scheduler and workers with `folder` as their working folder; yield the scheduler's address.
 
-    `outdated` workers have version 0.0.0 of the package.
+    Outdated workers have version 0.0.0 of the package.
     """
     metadata = folder / "lame" / "contactstudy-0.0.0.dist-info" / "METADATA"
     metadata.parent.mkdir(parents=True, exist_ok=True)
@@ -47,7 +47,7 @@ def cluster(folder: Path, workers: int = 2, *, outdated: int = 0) -> Iterator[Cl
         )
 
     processes = [start(SCHEDULER, ROOT), *(start(WORKER, ROOT) for _ in range(workers))]
-    processes += [start(WORKER, folder / "lame") for _ in range(outdated)]
+    processes += [start(WORKER, folder / "lame") for _ in range(outdated_workers)]
     try:
         address = Cluster(_read_address(folder / "scheduler.json"))
         address.processes = processes

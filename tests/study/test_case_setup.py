@@ -46,14 +46,14 @@ def test_load_without_positive_roller_length_raises():
         build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
 
 
-AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_length")} | {
+BASE_AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_length")} | {
     "approach": 1e-6,
     "accuracy": 0.01,
 }
 
 
 def test_approach_leaves_half_width_undefined():
-    setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
+    setup = build_setup(BASE_AT_APPROACH | {"end_distance": 1e-4})
     assert setup.case.approach == 1e-6
     assert np.isnan(setup.e_over_a)
 
@@ -70,7 +70,7 @@ def test_approach_leaves_half_width_undefined():
 )
 def test_approach_refuses_parameters_over_half_width(changes, message):
     with pytest.raises(InvalidInputError, match=message):
-        build_setup(AT_APPROACH | changes)
+        build_setup(BASE_AT_APPROACH | changes)
 
 
 def test_stress_points_are_over_a():
@@ -136,8 +136,8 @@ def test_identity_contains_default_accuracy():
     assert add_default_accuracy({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
     assert add_default_accuracy({"cells_x": 4.0}) == {"cells_x": 4.0}
     assert identity_value("friction", 0.0) is None
-    tapered = {"kind": "tapered", "half_angle": 0.1}
-    assert identity_value("profile", tapered | {"name": "ours"}) == tapered
+    profile_table = {"kind": "tapered", "half_angle": 0.1}
+    assert identity_value("profile", profile_table | {"name": "ours"}) == profile_table
 
 
 def test_motion_parameters_make_shift():

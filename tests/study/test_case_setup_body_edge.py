@@ -51,28 +51,32 @@ def test_study_accepts_body_edges_of_case_only(kind: str) -> None:
 
 def test_identity_ignores_sharp_edge_and_name() -> None:
     assert case_id(OVERHANG | {"body_edge": "cylinder"}) == case_id(OVERHANG)
-    rounded = {"kind": "cylinder", "fillet_radius": 2e-5}
-    assert case_id({"body_edge": rounded | {"name": "ours"}}) == case_id({"body_edge": rounded}) != case_id({})
+    edge_table = {"kind": "cylinder", "fillet_radius": 2e-5}
+    assert case_id({"body_edge": edge_table | {"name": "ours"}}) == case_id({"body_edge": edge_table}) != case_id({})
     assert PARAMETERS["body_edge"].default == {"kind": "cylinder"}
 
 
 def test_swept_edges_equal_solved_cases(tmp_path: Path) -> None:
     study = small_study(base=OVERHANG | {"stresses": False}, sweep={"body_edge": EDGES}, level="surface")
     path = tmp_path / "small.toml"
-    without_edges = small_study(base=OVERHANG | {"stresses": False}, sweep={}, level="surface")
-    path.write_text(format_toml(without_edges) + TABLES)
+    study_without_edges = small_study(base=OVERHANG | {"stresses": False}, sweep={}, level="surface")
+    path.write_text(format_toml(study_without_edges) + TABLES)
     assert Study.from_toml(path) == study == Study.from_mapping(json.loads(study.to_json()))
     assert run_study(study, tmp_path / "results", workers=0, progress=False).counts == {"ok": 3}
     dataset = open_study(tmp_path / "results", cells="original")
     assert dataset["body_edge"].values.tolist() == ["drawn", "cylinder fillet_radius=2e-05", "cylinder"]
     assert dataset["body_edge"].attrs["long_name"] == "body edge"
-    for planned, input_edge in zip(study.plan(), [profiles.Chamfer(width=5e-5, angle=0.1), *EDGES[1:]], strict=True):
-        setup = build_setup(planned.parameters)
+    for planned_case, input_edge in zip(
+        study.plan(), [profiles.Chamfer(width=5e-5, angle=0.1), *EDGES[1:]], strict=True
+    ):
+        setup = build_setup(planned_case.parameters)
         expected = solve(setup.case, setup.grid, tolerance=1e-6, stresses=False)
-        stored = load_case(tmp_path / "results", planned.id)
-        assert solved_case(stored) == setup.case
+        stored_case = load_case(tmp_path / "results", planned_case.id)
+        assert solved_case(stored_case) == setup.case
         assert setup.case.body_edge == (profiles.Cylinder() if input_edge == "cylinder" else input_edge)
-        np.testing.assert_allclose(stored["pressure"], expected["pressure"], rtol=1e-6)  # stored in single precision
+        np.testing.assert_allclose(
+            stored_case["pressure"], expected["pressure"], rtol=1e-6
+        )  # stored in single precision
     assert len(set(dataset["peak_pressure"].values.tolist())) == len(EDGES)
 
 

@@ -82,11 +82,11 @@ def test_impossible_motions_are_skipped() -> None:
 
 def test_identity_contains_motion_without_defaults() -> None:
     assert case_id({"friction": 0.1, "motion": "sliding", "rolling_model": "exact"}) == case_id({"friction": 0.1})
-    rolling = {"friction": 0.1, "motion": "rolling"}
+    rolling_parameters = {"friction": 0.1, "motion": "rolling"}
     assert (
         len(
             {
-                case_id(rolling | motion_parameters)
+                case_id(rolling_parameters | motion_parameters)
                 for motion_parameters in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})
             }
         )

@@ -9,7 +9,7 @@ from contactstudy.study import load_case, run_study
 from contactstudy.study.case_setup import build_setup
 from tests.small_study import small_study
 
-WIDE = {
+WIDE_CONTACT = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
@@ -30,7 +30,7 @@ RIDGE |= {"profile": {"kind": "full-crown", "crown_radius": 5e-3}}  # wider than
 
 @pytest.mark.parametrize("changes", [{}, RIDGE])
 def test_default_window_is_widened(tmp_path, changes):
-    base = WIDE | changes
+    base = WIDE_CONTACT | changes
     study = small_study(base=base, sweep={})
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
@@ -46,7 +46,7 @@ def test_default_window_is_widened(tmp_path, changes):
 
 
 def test_narrow_explicit_window_raises(tmp_path):
-    report = run_study(small_study(base=WIDE | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
+    report = run_study(small_study(base=WIDE_CONTACT | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
     (failure,) = report.failures
     assert failure[1].startswith("WindowError")
 

@@ -56,15 +56,17 @@ def test_averaging_keeps_load(cases, seed):
 def test_interpolation_keeps_straight_lines(case_edges, slope, offset):
     centres = 0.5 * (case_edges[1:] + case_edges[:-1])
     common_points = np.linspace(case_edges[0], case_edges[-1], 30)
-    interpolated = resample("gap", offset + slope * centres, [make_resampling(case_edges, common_points, np.nan)])
+    interpolated_gap = resample("gap", offset + slope * centres, [make_resampling(case_edges, common_points, np.nan)])
     positions = 0.5 * (common_points[1:] + common_points[:-1])
-    np.testing.assert_allclose(interpolated, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12)
+    np.testing.assert_allclose(
+        interpolated_gap, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12
+    )
 
 
 def test_values_beyond_cells_are_nan_or_zero():
     common_edges = np.array([0.0, 1.0, 2.0, 3.0])
-    draw_edges = np.array([0.0, 1.0, 2.0])
-    along_x, along_y = make_resampling(draw_edges, common_edges, np.nan), make_resampling(draw_edges, common_edges, 0.0)
+    case_edges = np.array([0.0, 1.0, 2.0])
+    along_x, along_y = make_resampling(case_edges, common_edges, np.nan), make_resampling(case_edges, common_edges, 0.0)
     pressure = resample("pressure", np.ones((2, 2)), [along_x, along_y])
     np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
     assert np.isnan(pressure[2]).all()
@@ -73,8 +75,8 @@ def test_values_beyond_cells_are_nan_or_zero():
 
 
 def test_infinite_gap_keeps_position():
-    draw_edges = np.array([0.0, 1.0, 2.0, 3.0])
-    gap = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [make_resampling(draw_edges, draw_edges, np.nan)])
+    case_edges = np.array([0.0, 1.0, 2.0, 3.0])
+    gap = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [make_resampling(case_edges, case_edges, np.nan)])
     np.testing.assert_array_equal(gap, [1.0, np.inf, np.inf])
 
 
@@ -115,10 +117,10 @@ def test_refined_columns_share_common_axis(tmp_path):
             half_width = float(original_case["hertz_half_width"])
             last_load = load_between(original_case, end_distance * half_width, (end_distance + 1) * half_width)
             assert float(last_load) == pytest.approx(float(original_case["end_load_first"]), rel=1e-6, abs=1e-9)
-            single = single_case(original_case)
-            assert single["pressure"].dims == ("x", "y")
-            assert single["x_width"].dims == ("x",)
-            assert float(single["pressure"].max()) >= float(common_case["pressure"].max())
+            case_result = single_case(original_case)
+            assert case_result["pressure"].dims == ("x", "y")
+            assert case_result["x_width"].dims == ("x",)
+            assert float(case_result["pressure"].max()) >= float(common_case["pressure"].max())
     # All parameters of a bearing engineer are present, swept or not.
     assert common_dataset["gamma"].dims == ("max_pressure", "e_over_a")
     np.testing.assert_allclose(
@@ -153,9 +155,9 @@ def test_common_edges_combine_edges_of_two_cases():
 
 
 def test_end_cells_have_one_width():
-    draw_edges, points = [np.array([0.0, 1.0, 4.0]), np.array([-1.0, 0.0, 5.0])], [np.array([0.0, 2.0, 4.0])]
+    case_edges, points = [np.array([0.0, 1.0, 4.0]), np.array([-1.0, 0.0, 5.0])], [np.array([0.0, 2.0, 4.0])]
     width = END_WIDTH * 6.0
-    assert end_cells(draw_edges, points).tolist() == [[0.0, width], [4.0, 4.0 - width]]
+    assert end_cells(case_edges, points).tolist() == [[0.0, width], [4.0, 4.0 - width]]
 
 
 @given(st.lists(st.tuples(draw_edges(), st.floats(-3.0, 3.0)), min_size=1, max_size=5))

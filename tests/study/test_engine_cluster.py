@@ -16,8 +16,8 @@ from tests.stand_in_solver import DIES, HELD, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
 from tests.study.conftest import locate_tickets, start_run
 
-SHORT = {"roller_length": 0.2e-3}  # solved in half of the time
-LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
+SHORT_ROLLER = {"roller_length": 0.2e-3}  # solved in half of the time
+LARGE_SWEEP = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
 def load_dataset(folder):
@@ -71,14 +71,14 @@ def test_worker_version_mismatch_is_reported(study, tmp_path, monkeypatch):
     raises_version_error = pytest.raises(
         StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0"
     )
-    with cluster(tmp_path, workers=0, outdated=1) as address, raises_version_error:
+    with cluster(tmp_path, workers=0, outdated_workers=1) as address, raises_version_error:
         run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
 
 
 @pytest.mark.slow
 def test_worker_of_wrong_version_is_excluded(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=100.0))  # workers start slowly on a busy machine
-    with cluster(tmp_path, workers=1, outdated=1) as address:
+    with cluster(tmp_path, workers=1, outdated_workers=1) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 4}
 
@@ -108,11 +108,11 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 @pytest.mark.system
 def test_single_solution_equals_study_result(tmp_path):
     """Earlier cases of a worker do not change a bit of a result."""
-    run_study(small_study(base=BASE | SHORT), tmp_path / "all", workers=0)
-    single_case_study = small_study(base=BASE | SHORT, sweep={"e_over_a": [1.0], "friction": [0.1]})
+    run_study(small_study(base=BASE | SHORT_ROLLER), tmp_path / "all", workers=0)
+    single_case_study = small_study(base=BASE | SHORT_ROLLER, sweep={"e_over_a": [1.0], "friction": [0.1]})
     run_study(single_case_study, tmp_path / "alone", workers=1)
     results = [
-        load_case(tmp_path / name, identity(**SHORT, e_over_a=1.0, friction=0.1)).drop_vars("seconds")
+        load_case(tmp_path / name, identity(**SHORT_ROLLER, e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
     assert results[0].equals(results[1])
@@ -130,7 +130,7 @@ def test_cluster_of_separate_processes(two_workers, tmp_path):
     """A run with the address of the scheduler or with a client; the run does not close the client."""
     from distributed import Client
 
-    study = small_study("large", sweep=LARGE)
+    study = small_study("large", sweep=LARGE_SWEEP)
     run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
     with Client(str(two_workers)) as client, mock.patch.object(client, "submit", wraps=client.submit) as submit:
         for scheduler in (two_workers, client):
@@ -156,7 +156,7 @@ def test_dead_cluster_worker_fails_one_case(two_workers, tmp_path):
 @pytest.mark.system
 def test_results_do_not_depend_on_workers(two_workers, tmp_path):
     """Results are equal bit for bit in this process, with two workers, and on a cluster."""
-    study = small_study(base=BASE | SHORT, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
+    study = small_study(base=BASE | SHORT_ROLLER, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
     for workers in (0, 2):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
     run_study(study, tmp_path / "cluster", scheduler=two_workers)

@@ -16,7 +16,7 @@ from contactstudy.study.profile_tables import check_number
 from tests.small_study import BASE
 from tests.study.conftest import ROOT
 
-STORED = {
+STORED_IDENTITIES = {
     "edge_effect": (48, "afc89e0b3e7aff3b"),
     "end_distance": (27, "63cb95128676bb57"),
     "friction": (33, "96f92ee20a25bd8e"),
@@ -45,11 +45,11 @@ DEFAULTS = {
 }
 
 
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", STORED_IDENTITIES)
 def test_identities_of_stored_studies_never_change(name):
     cases = Study.from_toml(ROOT / "studies" / f"{name}.toml").plan()
     digest = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
-    assert (len(cases), digest[:16]) == STORED[name]
+    assert (len(cases), digest[:16]) == STORED_IDENTITIES[name]
 
 
 def test_defaults_match_stored_cases():

@@ -15,7 +15,7 @@ from tests.study.conftest import count_finished, has_intact_batches, locate_tick
 
 SECONDS = 300.0
 """Longest wait for another process, so large that slow machines pass."""
-LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
+LARGE_SWEEP = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
 def wait_for(process, condition):
@@ -34,7 +34,7 @@ def kill_group(process):
 @pytest.fixture
 def large_study_file(tmp_path):
     path = tmp_path / "large.toml"
-    path.write_text(format_toml(small_study("large", sweep=LARGE)))
+    path.write_text(format_toml(small_study("large", sweep=LARGE_SWEEP)))
     return path
 
 
@@ -55,7 +55,7 @@ def test_interrupted_run_releases_lock_and_resumes(large_study_file, tmp_path, s
     assert not Folder(folder).holders
     assert not list(folder.glob("**/*.part-*"))
     assert count_finished(folder) == 3
-    report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
+    report = run_study(small_study("large", sweep=LARGE_SWEEP), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (17, {"ok": 20})
 
 
@@ -103,5 +103,5 @@ def test_killed_run_is_taken_over(large_study_file, tmp_path):
     process.communicate(timeout=SECONDS)  # ends when the last worker has closed the pipe
     assert count_finished(folder) == 3
     assert has_intact_batches(folder)
-    report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
+    report = run_study(small_study("large", sweep=LARGE_SWEEP), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (17, {"ok": 20})

@@ -78,9 +78,9 @@ def test_surface_stress_of_circle_equals_closed_form() -> None:
     assert stress["tau_yz"] == pytest.approx(-0.25 * pressure, abs=1e-9)
     assert stress["tau_xz"] == pytest.approx(0, abs=1e-9)
     radial, hoop = compute_hertz_surface_stress(r, 1.0, 1.0, NU)
-    frictionless = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU)
-    assert frictionless["sigma_xx"] == pytest.approx(radial, abs=1e-9)
-    assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
+    frictionless_stress = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU)
+    assert frictionless_stress["sigma_xx"] == pytest.approx(radial, abs=1e-9)
+    assert frictionless_stress["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
     x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
     shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
     circle_stress = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
@@ -110,18 +110,20 @@ def test_stress_of_circle_on_axis_and_at_distance_equals_closed_forms() -> None:
 def test_stress_of_circle_is_symmetric() -> None:
     x, y, z = np.array([0.4, 1.1]), np.array([0.7, -0.2]), np.array([0.2, 0.9])
     odd_in_x, odd_in_y = {"tau_xy", "tau_xz"}, {"tau_xy", "tau_yz"}
-    frictionless, sliding = (ref.hertz_circle(x, y, z, 1.0, 1.0, NU, friction) for friction in (0.0, 1.0))
+    frictionless_stress, sliding_stress = (ref.hertz_circle(x, y, z, 1.0, 1.0, NU, friction) for friction in (0.0, 1.0))
     mirrored_frictionless, mirrored_sliding = (
         ref.hertz_circle(x, -y, z, 1.0, 1.0, NU, friction) for friction in (0.0, 1.0)
     )
     x_mirrored_sliding = ref.hertz_circle(-x, y, z, 1.0, 1.0, NU, 1.0)
     for name in ref.COMPONENTS:
         sign = -1 if name in odd_in_y else 1
-        assert mirrored_frictionless[name] == pytest.approx(sign * frictionless[name], abs=1e-12)
+        assert mirrored_frictionless[name] == pytest.approx(sign * frictionless_stress[name], abs=1e-12)
         assert mirrored_sliding[name] - mirrored_frictionless[name] == pytest.approx(
-            -sign * (sliding[name] - frictionless[name]), abs=1e-12
+            -sign * (sliding_stress[name] - frictionless_stress[name]), abs=1e-12
         )
-        assert x_mirrored_sliding[name] == pytest.approx((-1 if name in odd_in_x else 1) * sliding[name], abs=1e-12)
+        assert x_mirrored_sliding[name] == pytest.approx(
+            (-1 if name in odd_in_x else 1) * sliding_stress[name], abs=1e-12
+        )
 
 
 def test_hertz_contact_equals_closed_form() -> None:

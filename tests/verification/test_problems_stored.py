@@ -90,13 +90,13 @@ def test_stored_stress_has_free_ends_and_symmetry(name: str) -> None:
 
 def test_even_part_of_stored_sliding_stress_is_frictionless() -> None:
     """The part even in y of the sliding case equals the frictionless case; for `tau_xy` and `tau_yz`, the odd part."""
-    frictionless, sliding = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
-    mirrored_sliding = sliding.assign_coords(y=-sliding.y).sortby("y")
+    frictionless_stress, sliding_stress = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
+    mirrored_sliding = sliding_stress.assign_coords(y=-sliding_stress.y).sortby("y")
     for component in ref.COMPONENTS:
         sign = -1 if component in ("tau_xy", "tau_yz") else 1
-        even_part = 0.5 * (sliding[component] + sign * mirrored_sliding[component]).sel(y=frictionless.y)
-        assert np.abs(even_part - frictionless[component]).max() < 1e-5, component
-    assert np.abs(sliding.tau_xy).max() > 0.05
+        even_part = 0.5 * (sliding_stress[component] + sign * mirrored_sliding[component]).sel(y=frictionless_stress.y)
+        assert np.abs(even_part - frictionless_stress[component]).max() < 1e-5, component
+    assert np.abs(sliding_stress.tau_xy).max() > 0.05
 
 
 @pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])

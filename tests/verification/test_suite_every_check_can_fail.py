@@ -327,12 +327,12 @@ def test_changed_physics_fails_full_level_checks_of_friction(part: int) -> None:
 
 def find_passed_checks(group: str, part: int, *, full: bool) -> set[tuple[str, str]]:
     """Checks of a part that pass with every fault."""
-    passed = []
+    passed_checks = []
     for fault in FAULTS[group][part]:
         with changed_physics(fault):
             is_failed = find_failed_checks(suite.GROUPS[group](full)[part])
-        passed.append({check for check, fails in is_failed.items() if not fails})
-    return set.intersection(*passed)
+        passed_checks.append({check for check, fails in is_failed.items() if not fails})
+    return set.intersection(*passed_checks)
 
 
 @pytest.mark.slow

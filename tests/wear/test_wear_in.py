@@ -150,9 +150,9 @@ def test_wear_of_coupled_friction_by_work_is_friction_times_slip():
         coupled=True,
     )
     grid = choose_grid(case, cells_x=2, cells_y=6)
-    by_slip, by_work = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
-    assert float(by_work.worn_volume[-1]) == pytest.approx(0.2 * float(by_slip.worn_volume[-1]), rel=1e-12)
-    assert compute_ratio(by_slip.line_load.values[-1]) < compute_ratio(by_slip.line_load.values[0])
+    slip_result, work_result = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
+    assert float(work_result.worn_volume[-1]) == pytest.approx(0.2 * float(slip_result.worn_volume[-1]), rel=1e-12)
+    assert compute_ratio(slip_result.line_load.values[-1]) < compute_ratio(slip_result.line_load.values[0])
 
 
 @pytest.fixture(scope="module")
@@ -324,11 +324,11 @@ def test_wear_by_slip_equals_wear_by_work() -> None:
     frictionless_case = Case(body=body, roller=roller, max_pressure=1.5e9)
     creepage = 0.1 * friction * frictionless_case.hertz_half_width / 5e-3
     case = replace(frictionless_case, friction=friction, motion=Rolling(longitudinal_creepage=creepage))
-    by_slip, by_work = (
+    slip_result, work_result = (
         float(wear_in(case, coefficient, distance=[0.0, 10.0], law=law).worn_volume[-1])
         for law, coefficient in (("slip", 1e-17), ("work", 1e-17 / friction))
     )
-    assert by_slip == pytest.approx(by_work, rel=1e-3)
+    assert slip_result == pytest.approx(work_result, rel=1e-3)
 
 
 @pytest.mark.slow

@@ -75,12 +75,14 @@ def test_prescribed_approach_equals_prescribed_load(body):
     case = make_crowned_case(body=body, end_distance=2 * HALF_WIDTH)
     grid = choose_grid(case)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    by_load = solve_contact(body, gap, load=case.normal_load)
-    by_approach = solve_contact(body, gap, approach=float(by_load.approach))
-    assert bool(by_approach.converged)
-    assert float(by_approach["normal_load"]) == pytest.approx(case.normal_load, rel=1e-5)
-    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-4 * float(by_load.pressure.max()))
-    assert float(by_approach.approach) == float(by_load.approach)
+    contact_by_load = solve_contact(body, gap, load=case.normal_load)
+    contact_by_approach = solve_contact(body, gap, approach=float(contact_by_load.approach))
+    assert bool(contact_by_approach.converged)
+    assert float(contact_by_approach["normal_load"]) == pytest.approx(case.normal_load, rel=1e-5)
+    np.testing.assert_allclose(
+        contact_by_approach.pressure, contact_by_load.pressure, atol=1e-4 * float(contact_by_load.pressure.max())
+    )
+    assert float(contact_by_approach.approach) == float(contact_by_load.approach)
 
 
 def test_approach_of_hertz_point_contact():
@@ -149,10 +151,10 @@ def test_roughness_on_other_cells_is_interpolated():
         heights = 1e-3 * (cells.x[:, None] - 0.5 * LENGTH) + 2e-3 * cells.y
         return xr.DataArray(heights, coords={"x": cells.x, "y": cells.y}, dims=("x", "y"))
 
-    expected, interpolated = (
+    expected, interpolated_result = (
         solve(case, grid, roughness=compute_sloping_heights(cells), stresses=False) for cells in (grid, wider_grid)
     )
-    np.testing.assert_allclose(interpolated.initial_gap, expected.initial_gap, atol=1e-18)
+    np.testing.assert_allclose(interpolated_result.initial_gap, expected.initial_gap, atol=1e-18)
     tilted_result = solve(make_crowned_case(tilt=1e-3), grid, stresses=False)
     assert float(expected.load_position) == pytest.approx(float(tilted_result.load_position), abs=1e-2 * HALF_WIDTH)
 

@@ -114,9 +114,9 @@ def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator,
     # A pressure with the resultants is unchanged; a factor linear in the arm removes a small moment.
     assert resultants.restore(computed) == pytest.approx(computed, rel=1e-6)
     perturbed_pressure = 1e3 * computed * (1 + 0.1 * resultants.lever)
-    repeated = resultants.restore(perturbed_pressure)
-    check_conditions(resultants, repeated)
-    factor = (repeated / np.where(computed > 0, perturbed_pressure, 1.0)).max(axis=1)
+    repeated_pressure = resultants.restore(perturbed_pressure)
+    check_conditions(resultants, repeated_pressure)
+    factor = (repeated_pressure / np.where(computed > 0, perturbed_pressure, 1.0)).max(axis=1)
     is_loaded = factor > 0
     coefficients = np.polynomial.polynomial.polyfit(arm[is_loaded, 0], factor[is_loaded], 1)
     assert np.polynomial.polynomial.polyval(arm[is_loaded, 0], coefficients) == pytest.approx(
@@ -210,14 +210,16 @@ def test_area_change_reduces_energy_and_keeps_resultants(
         if index % 2:
             iteration._step_to_border(step, response)
         else:
-            closed = ~iteration.contact & (opening < 0)
-            iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, response)
+            closed_cells = ~iteration.contact & (opening < 0)
+            iteration.change_area(
+                iteration.pressure - step * iteration.direction, closed_cells, opening, step, response
+            )
         iteration.contact, iteration.area_changed = iteration.pressure > 0, True
         assert iteration.pressure.min() >= 0
         assert iteration.displacement == pytest.approx(compute_displacement(iteration.pressure), rel=1e-9)
         if resultants.total is not None:
             check_conditions(resultants, iteration.pressure)
-        if index % 2 or closed.any():
+        if index % 2 or closed_cells.any():
             energy_after = compute_potential_energy(gap, iteration.pressure)
             assert energy_after <= previous_energy + 1e-9 * abs(previous_energy)
         previous_energy = compute_potential_energy(gap, iteration.pressure)
@@ -277,9 +279,9 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
     iteration = make_state(unit * gap, Resultants(None), unit * start)
     opening = iteration.compute_opening()
     step, response, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
-    closed = ~iteration.contact & (opening < 0)
-    iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, response)
-    assert iteration.pressure[closed].sum() > 0.05 * iteration.pressure.sum()
+    closed_cells = ~iteration.contact & (opening < 0)
+    iteration.change_area(iteration.pressure - step * iteration.direction, closed_cells, opening, step, response)
+    assert iteration.pressure[closed_cells].sum() > 0.05 * iteration.pressure.sum()
     baseline = make_state(gap, Resultants(None), start)
     assert iteration._balance_sides(unit * start) == pytest.approx(unit * baseline._balance_sides(start))
     balanced_state = make_state(
@@ -291,7 +293,7 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
         return
     opening = baseline.compute_opening()
     step, response, _ = baseline.search_step(np.where(baseline.contact, opening, 0.0))
-    baseline.change_area(baseline.pressure - step * baseline.direction, closed, opening, step, response)
+    baseline.change_area(baseline.pressure - step * baseline.direction, closed_cells, opening, step, response)
     assert iteration.pressure / unit == pytest.approx(baseline.pressure, rel=1e-6)
 
 

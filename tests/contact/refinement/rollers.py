@@ -31,16 +31,16 @@ def refine_case(case: Case, accuracy: float = 0.01) -> RefinedContact:
 
 def find_peak_between_cells(pressure: FloatArray) -> float:
     """Largest pressure, also between the cells along y, by a parabola through the squared pressure."""
-    squared = pressure**2
-    column = squared[squared.max(axis=1).argmax()]
+    squared_pressure = pressure**2
+    column = squared_pressure[squared_pressure.max(axis=1).argmax()]
     peak_row = int(column.argmax())
     coefficients = np.polynomial.polynomial.polyfit([-1.0, 0.0, 1.0], column[peak_row - 1 : peak_row + 2], 2)
     return float(np.sqrt(coefficients[0] - coefficients[1] ** 2 / (4 * coefficients[2])))
 
 
-def compute_finer_peak(case: Case, refined: RefinedContact, factor: int) -> float:
+def compute_finer_peak(case: Case, refined_contact: RefinedContact, factor: int) -> float:
     """Peak on cells that are `factor` times finer along both axes."""
-    edges, grid = refined.refined.edges, refined.contact.shape.grid
+    edges, grid = refined_contact.refined.edges, refined_contact.contact.shape.grid
     fine_edges = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
     solver = _ColumnSolver(case, grid.y_range[1], grid.cells_y * factor)
     return find_peak_between_cells(contact_of(solver.shape(fine_edges), Settings(1e-6)).pressure)

@@ -133,10 +133,12 @@ def make_samples(pressure: FloatArray) -> list[Sample]:
 
 @given(exponent=st.floats(0.15, 0.5))
 def test_power_growth_has_power_law(exponent: float) -> None:
-    theory_law, fit_end_law = (law_of(make_samples(WIDTHS**-exponent), theory) for theory in (RIGID, np.nan))
+    theory_law, fitted_law = (
+        law_of(make_samples(WIDTHS**-exponent), theory_exponent) for theory_exponent in (RIGID, np.nan)
+    )
     assert theory_law == EndLaw(exponent=RIGID)
-    assert fit_end_law is not None
-    assert np.isnan(fit_end_law.exponent)
+    assert fitted_law is not None
+    assert np.isnan(fitted_law.exponent)
 
 
 @given(growth_rate=st.floats(0.02, 0.2))

@@ -75,8 +75,8 @@ def test_approach_between_free_ends_reproduces_load() -> None:
 
 
 def test_tractions_at_prescribed_approach() -> None:
-    rolling = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
-    result = solve(rolling, stresses=False, accuracy=0.1)
+    rolling_case = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
+    result = solve(rolling_case, stresses=False, accuracy=0.1)
     assert float(result.approach) == APPROACH
     assert float(result.normal_load) == pytest.approx(HERTZ_LOAD, rel=5e-3)
     assert 0 < abs(float(result.force_y)) < 0.1 * float(result.normal_load)

@@ -135,11 +135,11 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
     flush_result = solve(flush_case, accuracy=0.05, stresses=False)
     assert bool(computed.converged)
     assert float(computed.peak_pressure) == pytest.approx(float(flush_result.peak_pressure), rel=0.01)
-    repeated = stress_field(
+    repeated_stress = stress_field(
         case.body, computed.pressure, x=[0.0, HALF_WIDTH], y=[0.0], z=[0.3 * HALF_WIDTH], inside_cells=computed.pressure
     )
     # The certificate uses the quadrature of the stresses in `solve`.
-    assert np.allclose(repeated.von_mises.values, computed.von_mises.values, rtol=1e-5)
+    assert np.allclose(repeated_stress.von_mises.values, computed.von_mises.values, rtol=1e-5)
 
 
 @pytest.mark.parametrize("distance", [1e-4, 0.05])

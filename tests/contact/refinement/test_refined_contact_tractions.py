@@ -76,8 +76,10 @@ def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None
 
 
 def test_motion_keeps_columns() -> None:
-    rolling = replace(SHORT_CASE, motion=Rolling(longitudinal_creepage=2e-2))
-    sliding_result, rolling_result = (solve(case, stresses=False, accuracy=0.1) for case in (SHORT_CASE, rolling))
+    rolling_short_case = replace(SHORT_CASE, motion=Rolling(longitudinal_creepage=2e-2))
+    sliding_result, rolling_result = (
+        solve(case, stresses=False, accuracy=0.1) for case in (SHORT_CASE, rolling_short_case)
+    )
     assert np.array_equal(sliding_result["x"], rolling_result["x"])
     assert float(rolling_result["end_intensity_first"]) == pytest.approx(
         float(sliding_result["end_intensity_first"]), rel=0.01

@@ -37,9 +37,9 @@ Y = (np.arange(16) - 7.5) / 8
 
 
 def make_shape(
-    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
+    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), is_elastic: bool = False
 ) -> AxialShape:
-    exponents = [np.nan if elastic or refined_contact == 0 else RIGID for refined_contact in face_beyond]
+    exponents = [np.nan if is_elastic or refined_contact == 0 else RIGID for refined_contact in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
@@ -195,7 +195,7 @@ def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) ->
         means = 0.7 * np.diff(first_primitive + relative_slope * second_primitive) / np.diff(edges)
         return make_column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    computed = refine_columns(solve_exactly, make_shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
+    computed = refine_columns(solve_exactly, make_shape(face_beyond=(np.inf, 0.0), is_elastic=exponent != RIGID), 0.01)
     singular_law, regular_law = computed.laws
     assert singular_law is not None
     assert regular_law is None
@@ -300,22 +300,22 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
 
 
 def list_outermost_widths(
-    name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, elastic: bool = False
+    name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, is_elastic: bool = False
 ) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
-    request = make_shape(face_beyond=face_beyond, elastic=elastic)
+    request = make_shape(face_beyond=face_beyond, is_elastic=is_elastic)
     widths = np.diff(refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02).edges) / HALF_WIDTH
     return float(widths[0]), float(widths[-1])
 
 
-@pytest.mark.parametrize("elastic", [False, True])
-def test_sharper_ends_have_narrower_columns(*, elastic: bool) -> None:
+@pytest.mark.parametrize("is_elastic", [False, True])
+def test_sharper_ends_have_narrower_columns(*, is_elastic: bool) -> None:
     for width in list_outermost_widths("falls to the end"):
         assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
         assert 0.3 * MIN_END_COLUMN < list_outermost_widths(name)[1] <= MIN_END_COLUMN
     for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
-        widths = list_outermost_widths("falls to the end", face_beyond, elastic=elastic)
+        widths = list_outermost_widths("falls to the end", face_beyond, is_elastic=is_elastic)
         sharp_end = face_beyond.index(2.0)
         assert 0.1 * MIN_END_COLUMN < widths[sharp_end] <= MIN_END_COLUMN
         assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp_end] <= END_COLUMN_WIDTH
@@ -380,13 +380,13 @@ def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
 def test_replaced_pressure_scales_errors(name: str) -> None:
     request = make_shape(face_beyond=(3.0, 0.0))
     computed = refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02)
-    replaced = replace_pressure(computed, 1.25 * computed.pressure, request)
-    for values, expected in ((replaced.values, computed.values), (replaced.errors, computed.errors)):
+    replaced_contact = replace_pressure(computed, 1.25 * computed.pressure, request)
+    for values, expected in ((replaced_contact.values, computed.values), (replaced_contact.errors, computed.errors)):
         for key in ("peak_pressure", "end_pressure"):
             assert values[key] == pytest.approx([1.25 * value for value in expected[key]]), key
-    assert replaced.values["end_load"] == pytest.approx([1.25 * value for value in computed.values["end_load"]])
-    assert replaced.errors["end_load"] == computed.errors["end_load"]
-    for law, replaced_law in zip(computed.laws, replaced.laws, strict=True):
+    assert replaced_contact.values["end_load"] == pytest.approx([1.25 * value for value in computed.values["end_load"]])
+    assert replaced_contact.errors["end_load"] == computed.errors["end_load"]
+    for law, replaced_law in zip(computed.laws, replaced_contact.laws, strict=True):
         assert (law is None) == (replaced_law is None)
         if law and replaced_law:
             assert replaced_law.intensity == pytest.approx(1.25 * law.intensity)
@@ -397,9 +397,9 @@ def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     request = make_shape()
     computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), request, 0.02)
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ([0.0, 0.0], [0.0, 0.0])
-    make_column_pressure = computed.pressure.copy()
-    make_column_pressure[:20] += 0.02 * computed.pressure.max()
-    refined_contact = replace_pressure(computed, make_column_pressure, request)
+    changed_pressure = computed.pressure.copy()
+    changed_pressure[:20] += 0.02 * computed.pressure.max()
+    refined_contact = replace_pressure(computed, changed_pressure, request)
     first_pressure, last_pressure = refined_contact.values["end_pressure"]
     assert first_pressure > 0
     assert refined_contact.errors["end_pressure"] == [first_pressure, last_pressure] == [first_pressure, 0.0]
@@ -481,7 +481,7 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
     sharp_faces, other_faces = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
     assert is_singular(make_shape(face_beyond=sharp_faces))
     assert is_singular(make_shape(face_beyond=other_faces)) == (law is not None)
-    assert is_singular(make_shape(face_beyond=sharp_faces, elastic=True)) == (law is not None)
+    assert is_singular(make_shape(face_beyond=sharp_faces, is_elastic=True)) == (law is not None)
 
 
 def test_rough_contact_uses_second_threshold() -> None:

@@ -22,7 +22,7 @@ from contactstudy.contact.rolling.coulomb import (
 
 
 def make_problem(
-    rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
+    rigid_slip: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
 ) -> CoulombProblem:
     """Problem with a random positive definite compliance; `skew` adds an antisymmetric matrix, as in rolling."""
     rng = np.random.default_rng(seed)
@@ -39,7 +39,7 @@ def make_problem(
         apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
         bound=bound,
-        rigid=rigid,
+        rigid=rigid_slip,
         modes=modes,
         resultant_weights=modes,
         resultants=np.zeros(0) if forces is None else forces,
@@ -117,18 +117,18 @@ def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     """The rigid slip along one axis is prescribed and large; the rigid motions of force and moment leave no stick."""
     rng = np.random.default_rng(3)
     bound = rng.uniform(0.2, 1.0, 12)
-    rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
-    request = make_problem(rigid, bound, skew=0.5)
+    rigid_slip = np.stack([np.zeros(12), np.full(12, 30.0)])
+    request = make_problem(rigid_slip, bound, skew=0.5)
     modes = np.zeros((2, 2, 12))
     modes[0, 0] = 1.0
     modes[1] = length * rng.standard_normal((2, 12))
-    requested = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
-    request = replace(request, modes=modes, resultant_weights=modes, resultants=requested)
+    requested_forces = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
+    request = replace(request, modes=modes, resultant_weights=modes, resultants=requested_forces)
     computed = solve_coulomb(request)
     assert computed.converged
     assert not computed.sticks.any()
-    assert computed.traction[0].sum() == pytest.approx(requested[0], rel=1e-6)
-    assert (modes[1] * computed.traction).sum() == pytest.approx(requested[1], rel=1e-6)
+    assert computed.traction[0].sum() == pytest.approx(requested_forces[0], rel=1e-6)
+    assert (modes[1] * computed.traction).sum() == pytest.approx(requested_forces[1], rel=1e-6)
 
 
 def test_limit_projects_tractions_onto_bound() -> None:
@@ -185,9 +185,9 @@ def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]
     for seed in range(12):
         rng = np.random.default_rng(seed)
         bound = rng.uniform(0.2, 1.0, 24)
-        requested = rng.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
-        rigid = rng.uniform(0.1, 2.0) * rng.standard_normal((2, 24))
-        request = make_problem(rigid, bound, forces=requested, skew=0.2 * (seed % 6), seed=seed)
+        requested_forces = rng.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        rigid_slip = rng.uniform(0.1, 2.0) * rng.standard_normal((2, 24))
+        request = make_problem(rigid_slip, bound, forces=requested_forces, skew=0.2 * (seed % 6), seed=seed)
 
         def apply_compliance(traction: FloatArray, request: CoulombProblem = request) -> FloatArray:
             applications.append(1)

@@ -61,8 +61,8 @@ def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPat
     """The resultants change linearly from those of zero unknown slip to the prescribed ones, in adaptive steps."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     rng = np.random.default_rng(6)
-    requested = 0.5 * bound.sum() * np.array([0.6, 0.8])
-    request = replace(make_problem(rng.standard_normal((2, 12)), bound, forces=requested), max_steps=500)
+    requested_forces = 0.5 * bound.sum() * np.array([0.6, 0.8])
+    request = replace(make_problem(rng.standard_normal((2, 12)), bound, forces=requested_forces), max_steps=500)
     fractions: list[float] = []
     step_counts: list[int] = []
     step_fails = [True, True, False, False, True, True, True, False, False]
@@ -79,15 +79,15 @@ def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPat
         if len(step_counts) > 1:
             fraction = (
                 (trial_problem.resultants - first_resultants)
-                @ (requested - first_resultants)
-                / ((requested - first_resultants) @ (requested - first_resultants))
+                @ (requested_forces - first_resultants)
+                / ((requested_forces - first_resultants) @ (requested_forces - first_resultants))
             )
             assert trial_problem.resultants == pytest.approx(
-                first_resultants + fraction * (requested - first_resultants)
+                first_resultants + fraction * (requested_forces - first_resultants)
             )
             fractions.append(float(fraction))
-        failed = step_fails.pop(0) if step_fails else False
-        return replace(computed, steps=steps, converged=not failed)
+        step_failed = step_fails.pop(0) if step_fails else False
+        return replace(computed, steps=steps, converged=not step_failed)
 
     monkeypatch.setattr(coulomb, "solve_coulomb", record_and_solve)
     computed = solve_with_continuation(request)

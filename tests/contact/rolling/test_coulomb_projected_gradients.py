@@ -62,8 +62,8 @@ def make_graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, 
     """Cells of different sizes in some units, on which the compliance times the areas is symmetric."""
     rng = np.random.default_rng(seed)
     bound, relative_areas = pressure * rng.uniform(0.2, 1.0, CELLS), rng.uniform(0.2, 2.0, CELLS)
-    requested = 0.6 * float((relative_areas * bound).sum()) * np.array([0.6, -0.8]) if forces else None
-    request = make_problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=requested, seed=seed)
+    requested_forces = 0.6 * float((relative_areas * bound).sum()) * np.array([0.6, -0.8]) if forces else None
+    request = make_problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=requested_forces, seed=seed)
     component_fractions = np.tile(relative_areas, 2)
     uniform_matrix = np.stack(
         [request.apply_compliance(column.reshape(2, CELLS)).ravel() for column in np.eye(2 * CELLS)], axis=1
@@ -110,9 +110,9 @@ def test_descent_steps_reduce_energy(seed: int) -> None:
     """A decreasing energy excludes cycles."""
     request, energies = make_graded_problem(seed), []
     for steps in range(12):
-        zero = np.zeros((2, CELLS))
+        zero_traction = np.zeros((2, CELLS))
         computed, _ = descend_energy(
-            request.apply_compliance, request.rigid, zero, request.bound, request.relative_areas, steps
+            request.apply_compliance, request.rigid, zero_traction, request.bound, request.relative_areas, steps
         )
         energies.append(
             float(
@@ -130,9 +130,9 @@ def test_descent_step_length_adapts() -> None:
         applications.append(traction)
         return stiffness * traction
 
-    requested = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
+    requested_forces = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
     computed, _ = descend_energy(
-        apply_compliance, stiffness * requested, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS)
+        apply_compliance, stiffness * requested_forces, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS)
     )
-    assert computed == pytest.approx(requested, abs=1e-4)
+    assert computed == pytest.approx(requested_forces, abs=1e-4)
     assert len(applications) < 50

@@ -89,9 +89,9 @@ def test_coulomb_law_holds(motion: Rolling | Shift) -> None:
     moment_density = result.traction_y * result.x - result.traction_x * result.y
     assert float(result.moment_z) == pytest.approx(float(moment_density.sum()) * area, rel=1e-9, abs=1e-12)
     for name in ("force_x", "force_y", "moment_z"):
-        requested = getattr(motion, name, None)
-        if requested is not None:
-            assert float(result[name]) == pytest.approx(requested, abs=1e-6 * FRICTION * LOAD)
+        prescribed_value = getattr(motion, name, None)
+        if prescribed_value is not None:
+            assert float(result[name]) == pytest.approx(prescribed_value, abs=1e-6 * FRICTION * LOAD)
 
 
 def test_slip_follows_from_displacements() -> None:

@@ -137,8 +137,8 @@ def test_force_error_is_relative_to_largest_resultant(name: str) -> None:
     centres = 0.1 * LENGTH * (np.arange(26) - 12.5)
     arm = np.abs(centres - 0.1 * LENGTH)[:, None] + np.abs(centres)  # spin and moment refer to x = 0.1
     sizes = {"force_x": magnitude, "force_y": magnitude, "moment_z": arm * magnitude}
-    prescribed = {key: getattr(motion, key) for key in sizes if getattr(motion, key, None) is not None}
-    errors = [abs(tractions.resultants[key] - value) / sizes[key].sum() for key, value in prescribed.items()]
+    prescribed_values = {key: getattr(motion, key) for key in sizes if getattr(motion, key, None) is not None}
+    errors = [abs(tractions.resultants[key] - value) / sizes[key].sum() for key, value in prescribed_values.items()]
     assert tractions.force_error == pytest.approx(max(errors), rel=1e-9)
     assert tractions.force_error > 1e-6
 

@@ -55,11 +55,11 @@ def test_narrow_leading_cell_is_dependent(leading_length: float) -> None:
     assert cells.unknown[1, cells.source[0, last_column]] == last_column - 1
     assert cells.offset == pytest.approx(DEPENDENT_OFFSET)
     unit_traction = np.ones((2, cells.unknown.shape[1]))
-    on_grid = cells.ratio * cells.on_grid(unit_traction)
-    assert on_grid[0, 0, last_column] == pytest.approx(pressure[0, last_column] / pressure[0, last_column - 1])
+    grid_traction = cells.ratio * cells.on_grid(unit_traction)
+    assert grid_traction[0, 0, last_column] == pytest.approx(pressure[0, last_column] / pressure[0, last_column - 1])
     assert (cells.on_grid(cells.unknown[1])[0, 4 : last_column + 1] == [*range(4, last_column), last_column - 1]).all()
     weights = np.random.default_rng(0).random((3, *pressure.shape))
-    expected = (weights * on_grid[0]).sum(axis=(1, 2))
+    expected = (weights * grid_traction[0]).sum(axis=(1, 2))
     assert cells.gather(weights).sum(axis=1) == pytest.approx(expected)
 
 

@@ -22,9 +22,11 @@ ALONG_Y_ONLY = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=8
 
 
 def make_tractions(bound: FloatArray, traction: FloatArray, sticks: FloatArray) -> Tractions:
-    rigid = {"x": 0.5, "y": -0.25, "spin": 3.0}
+    rigid_motion = {"x": 0.5, "y": -0.25, "spin": 3.0}
     slip = np.zeros_like(traction)
-    return Tractions(traction=traction, slip=slip, sticks=sticks, bound=bound, rigid=rigid, resultants={}, work=0.0)
+    return Tractions(
+        traction=traction, slip=slip, sticks=sticks, bound=bound, rigid=rigid_motion, resultants={}, work=0.0
+    )
 
 
 def find_unknown_cells(bound: FloatArray) -> RollingCells:

@@ -38,10 +38,10 @@ def compute_periodic_offsets(period: int) -> IntArray:
     return (np.subtract.outer(cell_indices, cell_indices) + period // 2 - 1) % period - (period // 2 - 1)
 
 
-def compute_periodic_compliance(*, uniform: bool) -> FloatArray:
+def compute_periodic_compliance(*, is_uniform: bool) -> FloatArray:
     """Compliance (direction, row, column, load, row, column) on cells with a period of twice the patch."""
     offsets_y = compute_periodic_offsets(2 * COLUMNS)
-    if uniform:
+    if is_uniform:
         table = compute_displacements(STEP * np.arange(2 * ROWS + 2.0), ROWS)
         offsets_x = compute_periodic_offsets(2 * ROWS)
         computed = table[:, :, (offsets_x + ROWS)[:, :, None, None], (offsets_y + COLUMNS)[None, None]]
@@ -52,31 +52,31 @@ def compute_periodic_compliance(*, uniform: bool) -> FloatArray:
     return tables[..., offsets_y + COLUMNS].transpose(0, 2, 4, 1, 3, 5)
 
 
-@pytest.mark.parametrize("uniform", [True, False])
-@pytest.mark.parametrize("rolling", [False, True])
-def test_preconditioner_inverts_periodic_compliance(*, uniform: bool, rolling: bool) -> None:
-    edges = STEP * np.arange(ROWS + 3.0) if uniform else np.concatenate([[-4e-5], GRADED_EDGES, [12e-5]])
+@pytest.mark.parametrize("is_uniform", [True, False])
+@pytest.mark.parametrize("is_rolling", [False, True])
+def test_preconditioner_inverts_periodic_compliance(*, is_uniform: bool, is_rolling: bool) -> None:
+    edges = STEP * np.arange(ROWS + 3.0) if is_uniform else np.concatenate([[-4e-5], GRADED_EDGES, [12e-5]])
     grid = Grid.between(edges, (0.0, (COLUMNS + 2) * DY), COLUMNS + 2)
     mask = np.zeros(grid.shape, bool)
     mask[1 : 1 + ROWS, 1 : 1 + COLUMNS] = True
     mask[1, COLUMNS] = False
     cells = np.argwhere(mask).T
-    matrix = compute_periodic_compliance(uniform=uniform)
+    matrix = compute_periodic_compliance(is_uniform=is_uniform)
     shape, size = matrix.shape[:3], matrix[..., 0, 0, 0].size
     matrix = matrix.reshape(size, size)
-    if rolling:  # minus the displacement of the cell ahead; constants change a little
+    if is_rolling:  # minus the displacement of the cell ahead; constants change a little
         period = 2 * COLUMNS
         change = (1 + 1.5 * 2 * np.pi / period) * np.eye(period) - np.roll(np.eye(period), 1, axis=1)
         matrix = np.kron(np.eye(size // period), change / DY) @ matrix
     # Tractions begin as a root behind the leading edge of each row.
     length = mask.sum(axis=1)[cells[0]]
-    root_factor = np.sqrt((length - (cells[1] - 1) - 0.5) / length) if rolling else np.ones(cells.shape[1])
+    root_factor = np.sqrt((length - (cells[1] - 1) - 0.5) / length) if is_rolling else np.ones(cells.shape[1])
     slip = np.random.default_rng(1).standard_normal((2, cells.shape[1]))
     scaled_slip = np.zeros(shape)
     scaled_slip[:, cells[0] - 1, cells[1] - 1] = slip / root_factor
     expected = np.linalg.solve(matrix, scaled_slip.ravel()).reshape(shape)[:, cells[0] - 1, cells[1] - 1] * root_factor
-    computed = tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(slip)
+    computed = tangential_inverse(MATERIALS, cells, grid, rolling=is_rolling)(slip)
     assert computed == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
-    assert tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(3e-9 * slip) == pytest.approx(
+    assert tangential_inverse(MATERIALS, cells, grid, rolling=is_rolling)(3e-9 * slip) == pytest.approx(
         3e-9 * expected, abs=3e-14 * np.abs(expected).max()
     )
