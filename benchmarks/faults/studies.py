@@ -135,4 +135,4 @@ def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object
             assert process.returncode == 0, process.communicate()
             return
         assert time.monotonic() < deadline, "waited too long"
-        time.sleep(0.02)  # a shorter interval takes the core that the awaited process needs
+        time.sleep(0.02)  # shorter intervals would slow the other process on a single core

@@ -140,10 +140,10 @@ class Reynolds:
             mask = np.zeros(film.shape)
             mask[row_offset::3, column_offset::4] = 1.0
             row, column = rows + (row_offset - rows + 1) % 3 - 1, columns + (column_offset - columns + 2) % 4 - 2
-            within = (row >= 0) & (row < film.shape[0]) & (column >= 0) & (column < film.shape[1])
-            cells = np.flatnonzero(within), (row * film.shape[1] + column)[within]
-            matrices[0][cells] = self.outflow(pressure + step * mask, film).imag[within] / 1e-30
-            matrices[1][cells] = self.outflow(pressure, film + step * mask).imag[within] / 1e-30
+            is_within = (row >= 0) & (row < film.shape[0]) & (column >= 0) & (column < film.shape[1])
+            cells = np.flatnonzero(is_within), (row * film.shape[1] + column)[is_within]
+            matrices[0][cells] = self.outflow(pressure + step * mask, film).imag[is_within] / 1e-30
+            matrices[1][cells] = self.outflow(pressure, film + step * mask).imag[is_within] / 1e-30
         return matrices[0], matrices[1]
 
 

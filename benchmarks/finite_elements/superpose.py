@@ -44,7 +44,7 @@ class Resolution:
     panels: tuple[float, ...] = PANELS
 
     def make_mesh_x(self, length: float) -> Array:
-        """Edges graded to both ends; between, the multiples of 1/2, where loads begin and end."""
+        """Edges graded towards both ends; the inner edges are multiples of 1/2, where loads begin and end."""
         step = min(0.5, 0.25 * length)
         half_nodes = [0.0]
         while half_nodes[-1] < 0.25:

@@ -43,15 +43,15 @@ def draw_motion(rng: Random, case: Case, friction: float) -> Motion:
 
 
 def _draw_move_or_force(
-    rng: Random, move: str, force: str, move_scale: float, force_scale: float
+    rng: Random, kinematic_name: str, force_name: str, kinematic_scale: float, force_scale: float
 ) -> list[tuple[str, float]]:
     """Random prescribed value: a creepage or displacement, or the force in its direction, or none."""
     draw = rng.random()
     if draw < 0.3:
         return []
     if draw < 0.75:
-        return [(move, rng.choice((0.1, 1.0, 3.0)) * rng.uniform(-1.0, 1.0) * move_scale)]
-    return [(force, rng.uniform(-0.5, 0.5) * force_scale)]
+        return [(kinematic_name, rng.choice((0.1, 1.0, 3.0)) * rng.uniform(-1.0, 1.0) * kinematic_scale)]
+    return [(force_name, rng.uniform(-0.5, 0.5) * force_scale)]
 
 
 def mirror_motion(motion: Motion) -> Motion:

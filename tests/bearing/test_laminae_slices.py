@@ -40,7 +40,7 @@ def test_slice_loads_sum_to_load(load: float, tilt: float, slices: int, profile)
 
 
 def test_slice_loads_equal_standard_in_millimetres() -> None:
-    """The deflection and the drop of the standard are those of two contacts of steel."""
+    """The deflection and the drop in the standard apply to two contacts of steel in series."""
     case = replace(CASE, roller=replace(ROLLER, profile=IsoCylindrical(10e-3)))
     result = slice_model(case, slices=40, tilt=1e-4)
     position_mm = 1e3 * (result["x"].values - 5e-3)

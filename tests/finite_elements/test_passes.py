@@ -24,10 +24,10 @@ def test_line_contact_below_first_yield_has_no_plastic_strain() -> None:
 
 
 def test_residual_stress_equals_stress_of_uniform_layers() -> None:
-    """Far behind the contact the plastic strain is uniform along y; its stress follows with prevented strains xx and
+    """Far behind the contact the plastic strain is uniform along y; the stress follows from zero total strains xx and
     yy."""
     strip = PlasticStrip(PASSES_CASES["settling"], COARSE_STRIP)
-    strains, stresses, spread = strip.roll_over()
+    strains, stresses, strain_spread = strip.roll_over()
     xx, yy, zz, _ = YOUNG * strains[-1]
     poisson = strip.case.poisson
     assert xx + yy + zz == pytest.approx(0, abs=1e-9)
@@ -37,7 +37,7 @@ def test_residual_stress_equals_stress_of_uniform_layers() -> None:
     )
     assert stresses[2:] == pytest.approx(0, abs=0.01 * max_stress)
     assert max_stress > 0.05
-    assert YOUNG * spread.max() < 0.1 * np.abs(YOUNG * strains).max()
+    assert YOUNG * strain_spread.max() < 0.1 * np.abs(YOUNG * strains).max()
 
 
 def test_radial_return_tangent_equals_stress_derivative() -> None:

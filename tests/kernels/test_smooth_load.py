@@ -262,7 +262,7 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
     assert compute_means(shaped_load, np.array([edges[6] + 0.4, edges[7]]))[0] == 0
     assert shaped_load.middle[0, 4:7] == pytest.approx(1.0)
     assert_linear_square(shaped_load.shape, 5)
-    # The load does not extend without the option, at the end of a row, or next to another load.
+    # The load does not extend beyond its last cell without `extends_beyond`, at the end of a row, or beside a load.
     adjacent = np.where(np.arange(9) == 7, 1.0, loads)
     for row, extends_beyond in ((loads, False), (adjacent, True), (loads[:6], True)):
         unextended_form = fit_shape(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
@@ -310,7 +310,7 @@ def test_truncated_load_stays_in_last_cell() -> None:
 
 @pytest.mark.parametrize("loaded_fraction", [0.05, 0.2, 0.45, 0.8])
 def test_load_ends_in_last_cell_of_row(loaded_fraction: float) -> None:
-    """A last cell with little force shares it with the cell before, equally in a longer row."""
+    """A small force of the last cell is distributed over this and the previous cell, as in a longer row."""
     edges = np.arange(10.0)
     loaded_end = 8.0 + loaded_fraction
     root_integrals = (loaded_end**1.5 - np.maximum(loaded_end - edges, 0.0) ** 1.5) / 1.5

@@ -78,8 +78,9 @@ def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
 def test_equivalent_load_displaces_half_space_equally(on_cells, unit_material: Material) -> None:
     """The reference is a half-space under three copies of the equivalent load, side by side.
 
-    The added load decreases like 1/y, so the window along y is wide. At the ends it grows like a logarithm: the error
-    of the cells is some tenths of a percent of the displacement, and half as large on cells of half the width.
+    The added load decreases like 1/y, so the window along y is wide. At the ends the added load is proportional to a
+    logarithm: the error of the cells is some tenths of a percent of the displacement, and half as large on cells of
+    half the width.
     """
     body, half_space = make_body(4.0, unit_material), HalfSpace(material=unit_material)
     window, middle_rows = (-24.0, 24.0), slice(110, 130)

@@ -1,4 +1,4 @@
-"""Wavenumbers along y: panels, poles, and loads as few columns."""
+"""Modes along y: panels of wavenumbers, poles, and loads as low-rank products."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def start_run(
 ) -> subprocess.Popen[str]:
     """Start the command in a new process group; the stand-in solver solves `tickets` cases and then waits.
 
-    `prefix` is a prefix of the command, for example to run it in a container.
+    `prefix` precedes the command, for example a command of a container.
     """
     initial_tickets = locate_tickets(folder)
     give_tickets(initial_tickets, tickets)

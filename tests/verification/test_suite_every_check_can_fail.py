@@ -321,7 +321,7 @@ def test_changed_physics_fails_checks(group: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("part", [1, 4])
 def test_changed_physics_fails_full_level_checks_of_friction(part: int) -> None:
-    """Slopes and Kalker's coefficients; further checks of this level take minutes."""
+    """The parts check slopes and Kalker's coefficients; other parts of this level would take minutes."""
     assert find_passed_checks("friction", part, full=True) == set()
 
 

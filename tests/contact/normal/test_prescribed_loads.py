@@ -225,7 +225,7 @@ def test_approach_and_tilt_state_reference():
 
 
 def test_load_near_end_acts_at_prescribed_position():
-    """The initial guess lies on one side of the load: no multiple of it balances the load."""
+    """The initial guess lies on one side of the load: no multiple of this guess balances the load."""
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     crowned_roller = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
     arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}

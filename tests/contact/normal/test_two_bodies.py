@@ -1,4 +1,4 @@
-"""The operator of two bodies, also of a body with an odd number of cells, which cannot be coarsened."""
+"""The operator of two bodies; a body with an odd number of cells has no coarse cells."""
 
 from __future__ import annotations
 
