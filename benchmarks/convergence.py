@@ -59,11 +59,11 @@ class Table:
     title, setting, source : str
         Solved case, changed setting, and the reference of the errors.
     values : tuple of float
-        The setting.
+        Values of the setting.
     errors : dict of str to tuple of float
         Errors by quantity, one for each value.
-    used : float
-        The value in use, or the best of the table.
+    value_in_use : float
+        Value in use, or the most accurate value of the table.
     tolerance : float, optional
         Bound on every error at `used`, if checked.
     order : float, optional
@@ -75,7 +75,7 @@ class Table:
     source: str
     values: tuple[float, ...]
     errors: dict[str, tuple[float, ...]]
-    used: float
+    value_in_use: float
     tolerance: float | None = None
     order: float | None = None
 
@@ -91,11 +91,11 @@ class Table:
         return float(np.log(errors[0] / errors[-1]) / np.log(self.values[-1] / self.values[0]))
 
     def checks(self) -> Iterator[Check]:
-        """Compare the errors at the value in use with the tolerance, and the order with the one expected."""
+        """Compare the errors at the value in use with the tolerance, and the mean order with the expected order."""
         if self.tolerance is not None:
-            index = self.values.index(self.used)
+            index = self.values.index(self.value_in_use)
             for quantity, errors in self.errors.items():
-                case = f"{self.title}; {self.setting} {self.used:g}"
+                case = f"{self.title}; {self.setting} {self.value_in_use:g}"
                 yield Reference(case, self.source).compare(f"{quantity}, error", errors[index], 0.0, self.tolerance)
         if self.order is not None:
             shortfall = min(0.0, self.mean_order - self.order)
@@ -103,7 +103,7 @@ class Table:
             yield Reference(self.title, self.source).compare(quantity, shortfall, 0.0, 0.0)
 
 
-def point_contact() -> Table:
+def tabulate_point_contact() -> Table:
     """Hertz point contact over the grid."""
     body, errors = HalfSpace(material=unit_material()), []
     cells = (33, 65, 129, 257)
@@ -114,20 +114,20 @@ def point_contact() -> Table:
         line = contact["pressure"].sel(y=0, method="nearest")
         exact = peak * np.sqrt(np.maximum(1 - line["x"] ** 2, 0))
         errors.append((abs(float(contact["approach"]) - approach), float(abs(line - exact).mean()) / peak))
-    displacement_errors, mean = zip(*errors, strict=True)
+    approach_errors, mean_errors = zip(*errors, strict=True)
     return Table(
         title="Hertz point contact",
         setting="number of cells across",
         source="Hertz",
         values=cells,
-        errors={"approach": displacement_errors, "mean error of the pressure / p0 along y = 0": mean},
+        errors={"approach": approach_errors, "mean error of the pressure / p0 along y = 0": mean_errors},
         tolerance=1e-3,
-        used=257,
+        value_in_use=257,
         order=1.4,
     )
 
 
-def stress_grid() -> Table:
+def tabulate_stress_grid() -> Table:
     """Stresses under a smooth load over the grid."""
     case = LOAD_CASES["full_sliding"]
     reference_stress = load_reference(STRESS_FILE, "full_sliding").sel(z=slice(0.0999, None))
@@ -141,48 +141,48 @@ def stress_grid() -> Table:
         stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
         difference = np.abs(components(stress) - expected)
         errors.append((float(difference.max()), float(difference.mean())))
-    max_errors, mean = zip(*errors, strict=True)
+    max_errors, mean_errors = zip(*errors, strict=True)
     return Table(
         title="stresses under a smooth load on both ends, L = 8a, f = 0.3, z >= 0.1a",
         setting="number of cells over its width",
         source="finite elements",
         values=cells,
-        errors={"largest difference / p0": max_errors, "mean difference / p0": mean},
+        errors={"largest difference / p0": max_errors, "mean difference / p0": mean_errors},
         tolerance=5e-4,
-        used=64,
+        value_in_use=64,
         order=1.8,
     )
 
 
-def contact_grid() -> Table:
+def tabulate_contact_grid() -> Table:
     """Contact of a cylinder with a body of equal length over the grid."""
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     counts = (4, 8, 16, 32)
-    marks = np.array([0.25, 0.5, 1.0, 2.0])  # edges of cells on every grid
+    end_distances = np.array([0.25, 0.5, 1.0, 2.0])  # distances from an end: edges of cells on every grid
 
-    def solve_on(count: int) -> FloatArray:
+    def end_loads(count: int) -> FloatArray:
         gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-1.75, 1.75), (8 * count, 7 * count // 2 + 1 - count % 2))
         load = (
             solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"].sum("y")
             * 3.5
             / gap["y"].size
         )
-        resultant = np.append(0.0, np.cumsum(load.values)) * 8 / load.size
-        return np.asarray(resultant[np.round(marks * count).astype(int)])
+        cumulative_load = np.append(0.0, np.cumsum(load.values)) * 8 / load.size
+        return np.asarray(cumulative_load[np.round(end_distances * count).astype(int)])
 
-    reference = solve_on(96)
-    errors = np.array([np.abs(solve_on(count) - reference) for count in counts])
+    reference = end_loads(96)
+    errors = np.array([np.abs(end_loads(count) - reference) for count in counts])
     return Table(
         title="rigid cylinder on a body of the same length, 8a",
         setting="number of cells per a",
         source="96 cells per a",
         values=counts,
         errors={
-            f"load on the last {end_mark:g}a / (p0 a^2)": tuple(column)
-            for end_mark, column in zip(marks, errors.T, strict=True)
+            f"load on the last {end_distance:g}a / (p0 a^2)": tuple(column)
+            for end_distance, column in zip(end_distances, errors.T, strict=True)
         },
         tolerance=5e-3,
-        used=16,
+        value_in_use=16,
         order=1.0,
     )
 
@@ -198,7 +198,7 @@ FINEST_RESOLUTION = Resolution(
     lateral_order=32,
     lateral_reach=20.0,
 )
-"""Quadrature that the errors of others are measured against."""
+"""Reference of the errors: every setting finer than its default."""
 
 SETTINGS: dict[str, tuple[Any, ...]] = {
     "step": (0.44, 0.33, 0.22, 0.16),
@@ -211,7 +211,7 @@ SETTINGS: dict[str, tuple[Any, ...]] = {
     "lateral_order": (4, 8, 16, 32),
     "lateral_reach": (2.5, 5.0, 10.0, 20.0),
 }
-"""Values tried of every field of `Resolution`; each holds the default."""
+"""Tested values of every field of `Resolution`; the default is one of them."""
 
 
 QUADRATURE_CASE = "smooth load on both ends, L = 8a"
@@ -219,8 +219,8 @@ QUADRATURE_CASE = "smooth load on both ends, L = 8a"
 
 
 @lru_cache(maxsize=4)
-def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
-    """Stresses that the free ends add, and the displacement, with the given settings of the quadratures."""
+def _compute_end_fields(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
+    """Stresses of the end correction, and the displacement of the top, for the settings of the quadratures."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to(quartic(grid.y), grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
@@ -242,15 +242,18 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
 
 
 def _quadrature_errors(resolution: Resolution) -> tuple[float, float]:
-    """Largest errors of the stresses and of the displacement, against every setting much finer."""
+    """Largest errors of the stresses and of the displacement, against `FINEST_RESOLUTION`."""
     stress, displacement_error = (
-        float(np.abs(a - b).max()) for a, b in zip(_from_ends(resolution), _from_ends(FINEST_RESOLUTION), strict=True)
+        float(np.abs(field_values - finest_values).max())
+        for field_values, finest_values in zip(
+            _compute_end_fields(resolution), _compute_end_fields(FINEST_RESOLUTION), strict=True
+        )
     )
     return stress, displacement_error
 
 
-def quadrature_checks() -> Iterator[Check]:
-    """Errors that the quadratures leave with the settings in use."""
+def check_quadratures() -> Iterator[Check]:
+    """Errors of the quadratures with the default settings."""
     source = "every setting of the quadratures finer"
     for quantity, error in zip(("stresses / p0", "E* u_z / (p0 a)"), _quadrature_errors(Resolution()), strict=True):
         yield Reference(QUADRATURE_CASE, source).compare(
@@ -258,8 +261,8 @@ def quadrature_checks() -> Iterator[Check]:
         )
 
 
-def quadrature_tables() -> Iterator[Table]:
-    """Errors over every setting of the quadratures, the others at their defaults."""
+def tabulate_quadratures() -> Iterator[Table]:
+    """Errors over every setting of the quadratures, with the other settings at their defaults."""
     for name, values in SETTINGS.items():
         errors = [_quadrature_errors(replace(Resolution(), **{name: value})) for value in values]
         stresses, displacements = zip(*errors, strict=True)
@@ -269,22 +272,22 @@ def quadrature_tables() -> Iterator[Table]:
             source="every setting finer",
             values=values,
             errors={"stresses / p0": stresses, "E* u_z / (p0 a)": displacements},
-            used=getattr(Resolution(), name),
+            value_in_use=getattr(Resolution(), name),
         )
 
 
-def window() -> Table:
+def tabulate_window() -> Table:
     """Contact over the window in y: the pressure outside the contact is zero, so the window has no effect."""
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     widths = (1.3125, 1.75, 2.625, 3.5)
 
-    def solve_in_window(half_window: float) -> FloatArray:
+    def solve_pressure(half_window: float) -> FloatArray:
         gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-half_window, half_window), (64, round(32 * half_window)))
         pressure = solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"]
         return pressure.sel(y=slice(-1.3, 1.3)).values
 
-    reference = solve_in_window(7.0)
-    errors = tuple(float(np.abs(solve_in_window(width) - reference).max()) for width in widths)
+    reference = solve_pressure(7.0)
+    errors = tuple(float(np.abs(solve_pressure(width) - reference).max()) for width in widths)
     return Table(
         title="rigid cylinder on a body of the same length, 8a, 16 cells per a across",
         setting="half of the window over a",
@@ -292,22 +295,22 @@ def window() -> Table:
         values=widths,
         errors={"pressure / p0": errors},
         tolerance=1e-4,
-        used=1.75,
+        value_in_use=1.75,
     )
 
 
 def tables() -> Iterator[Table]:
     """Every table."""
-    yield point_contact()
-    yield stress_grid()
-    yield contact_grid()
-    yield window()
-    yield from quadrature_tables()
+    yield tabulate_point_contact()
+    yield tabulate_stress_grid()
+    yield tabulate_contact_grid()
+    yield tabulate_window()
+    yield from tabulate_quadratures()
 
 
-def markdown(table: Table) -> str:
+def format_markdown(table: Table) -> str:
     """Markdown table of a convergence study."""
-    cells = [f"**{value:.4g}**" if value == table.used else f"{value:.4g}" for value in table.values]
+    cells = [f"**{value:.4g}**" if value == table.value_in_use else f"{value:.4g}" for value in table.values]
     rows = [format_row([table.setting, *cells]), "|---" * (len(cells) + 1) + "|"]
     for quantity, errors in table.errors.items():
         rows.append(format_row([quantity, *(f"{error:.1e}" for error in errors)]))
@@ -317,14 +320,14 @@ def markdown(table: Table) -> str:
 
 
 def plot_convergence(tables: list[Table]) -> Figure:
-    """Draw errors over the values of every setting at equal distances; a dot marks the value in use."""
+    """Draw the errors over every setting, its values at equal distances; a large dot marks the value in use."""
     figure, axes = create_panels(len(tables))
     for ax, table in zip(axes, tables, strict=True):
-        used = table.values.index(table.used)
+        value_index = table.values.index(table.value_in_use)
         for style, (quantity, errors) in zip(line_styles(len(table.errors)), table.errors.items(), strict=True):
             visible = np.maximum(errors, 1e-12)
             ax.plot(visible, marker=".", label=textwrap.shorten(quantity, 30), **style)
-            ax.plot(used, visible[used], marker="o", color=style["color"])
+            ax.plot(value_index, visible[value_index], marker="o", color=style["color"])
         ax.set_yscale("log")
         ax.set_xticks(range(len(table.values)), [f"{value:.3g}" for value in table.values])
         ax.set_xlabel(table.setting)
@@ -340,9 +343,9 @@ def main() -> int:
     parser.add_argument("--out", type=Path, help="folder of the figure")
     options = parser.parse_args()
     all_tables = list(tables())
-    checks = [*quadrature_checks(), *(check for table in all_tables for check in table.checks())]
+    checks = [*check_quadratures(), *(check for table in all_tables for check in table.checks())]
     for table in all_tables:
-        print(f"\n{markdown(table)}")
+        print(f"\n{format_markdown(table)}")
     print(f"\n{HEADING}")
     for check in checks:
         print(format_line(check))

@@ -18,8 +18,8 @@ from random import Random
 import numpy as np
 
 import contactstudy as cs
-from benchmarks.fuzz.shapes import magnitude
-from benchmarks.performance.memory import peak
+from benchmarks.fuzz.shapes import draw_magnitude
+from benchmarks.performance.memory import measure_peak_memory
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.film import Asperities, solve_film
 from contactstudy.film.levels import Level, continue_solution, film_on_level, moes_line
@@ -33,9 +33,9 @@ MAX_LOAD, MAX_LENGTH = 80.0, 90.0  # Number M and length over a of films that ar
 FURTHER_CELLS, FURTHER_COLUMNS = 3, 2  # Refinements of the films for comparison beyond the last level
 
 
-def random_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
-    """A profile with drops about those that a design for the pressure has."""
-    drop = amplitude * magnitude(rng, 0.5, 3.0)
+def draw_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
+    """A profile with a drop of the order of a design for the pressure."""
+    drop = amplitude * draw_magnitude(rng, 0.5, 3.0)
     kind = rng.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
     if kind == "Lundberg":
         return cs.profiles.Lundberg(amplitude=drop, delta=rng.choice((0.0, 1.0)))
@@ -44,21 +44,21 @@ def random_profile(rng: Random, amplitude: float, half_width: float, length: flo
     depth = 4 * drop
     if kind == "crown":
         return cs.profiles.FullCrown(length**2 / (8 * depth))
-    straight = rng.uniform(0.3, 0.8) * length
-    return cs.profiles.PartialCrown(straight, (length - straight) ** 2 / (8 * depth))
+    straight_length = rng.uniform(0.3, 0.8) * length
+    return cs.profiles.PartialCrown(straight_length, (length - straight_length) ** 2 / (8 * depth))
 
 
-def random_case(rng: Random) -> cs.Case:
+def draw_case(rng: Random) -> cs.Case:
     """A case with speed and lubricant."""
-    half_width = magnitude(rng, 30e-6, 90e-6)
-    rigid = rng.random() < 0.5
-    modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
+    half_width = draw_magnitude(rng, 30e-6, 90e-6)
+    is_rigid = rng.random() < 0.5
+    modulus = STEEL.plane_strain_modulus / (1 if is_rigid else 2)
     pressure = half_width * modulus / (2 * RADIUS)
-    length = half_width * magnitude(rng, 8.0, 250.0)
-    profile = random_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
+    length = half_width * draw_magnitude(rng, 8.0, 250.0)
+    profile = draw_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
     distance = rng.choice((0.0, 0.0, rng.uniform(0.0, 5.0))) * half_width
     tilt = rng.choice((0.0, 0.0, rng.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
-    roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
+    roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if is_rigid else STEEL)
     case = cs.Case(
         body=cs.FiniteLengthSpace(length=length + 2 * distance, material=STEEL),
         roller=roller,
@@ -66,32 +66,32 @@ def random_case(rng: Random) -> cs.Case:
         tilt=tilt,
         max_pressure=pressure,
     )
-    load, lubricant = magnitude(rng, 5.0, 2000.0), rng.uniform(2.0, 16.0)
+    load, lubricant = draw_magnitude(rng, 5.0, 2000.0), rng.uniform(2.0, 16.0)
     stiffness = 2 * case.modulus
-    root = case.normal_load / (case.contact_length * stiffness * RADIUS * load)
-    speed = 0.5 * root**2 * stiffness * RADIUS / VISCOSITY
+    speed_root = case.normal_load / (case.contact_length * stiffness * RADIUS * load)
+    speed = 0.5 * speed_root**2 * stiffness * RADIUS / VISCOSITY
     oil = cs.Lubricant(
         viscosity=VISCOSITY,
-        pressure_viscosity=lubricant / (stiffness * root**0.5),
+        pressure_viscosity=lubricant / (stiffness * speed_root**0.5),
         viscosity_law=rng.choice(("barus", "roelands")),
         density_law=rng.choice(("constant", "dowson-higginson")),
     )
     return replace(case, lubricant=oil, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
 
 
-def moes_numbers(case: cs.Case) -> tuple[float, float, float]:
-    """Moes' numbers M and L of the mean load per length, and the scale of his films, metres."""
+def compute_moes_numbers(case: cs.Case) -> tuple[float, float, float]:
+    """Moes' numbers M and L of the mean load per length, and the scale of dimensionless films, metres."""
     assert case.lubricant is not None
     assert isinstance(case.motion, cs.Sliding)
     stiffness = 2 * case.modulus
-    root = float(np.sqrt(2 * VISCOSITY * case.motion.body_speed / (stiffness * RADIUS)))
-    load = case.normal_load / case.contact_length / (stiffness * RADIUS * root)
-    return load, case.lubricant.pressure_viscosity * stiffness * root**0.5, RADIUS * root
+    speed_root = float(np.sqrt(2 * VISCOSITY * case.motion.body_speed / (stiffness * RADIUS)))
+    load = case.normal_load / case.contact_length / (stiffness * RADIUS * speed_root)
+    return load, case.lubricant.pressure_viscosity * stiffness * speed_root**0.5, RADIUS * speed_root
 
 
-def outcome(seed: int, accuracy: float) -> tuple[str, str]:
-    """Run one seed: its kind, and what to print."""
-    case = random_case(Random(seed))
+def solve_seed(seed: int, accuracy: float) -> tuple[str, str]:
+    """Solve one seed; return its kind and its line of output."""
+    case = draw_case(Random(seed))
     start_time = time.perf_counter()
     kind, text = "smooth", ""
     try:
@@ -101,7 +101,7 @@ def outcome(seed: int, accuracy: float) -> tuple[str, str]:
             if "closes" not in str(error):
                 raise
             kind = "rough"
-            load, lubricant, height = moes_numbers(case)
+            load, lubricant, height = compute_moes_numbers(case)
             central = float(moes_line(load, lubricant)) * height
             film = solve_film(case, accuracy=accuracy, asperities=Asperities(rms=0.1 * central))
         central = float(film.central_film)
@@ -115,27 +115,29 @@ def outcome(seed: int, accuracy: float) -> tuple[str, str]:
         kind, text = "failed", f"{kind}: {error}"
     except cs.InvalidInputError as error:
         kind, text = "refused", str(error)
-    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s, peak memory {peak():.0f} MB"
+    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s, peak memory {measure_peak_memory():.0f} MB"
 
 
 def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]] | None:
-    """Stated errors and changes to finer cells, of each film; None for a case whose finer film takes long."""
-    case = random_case(Random(seed))
-    if moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
+    """Stated error of each film and its change on finer cells; None for a case with a costly finer film."""
+    case = draw_case(Random(seed))
+    if compute_moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
         return None
     result, film = solve_film(case, accuracy=accuracy), create_film_case(case)
     level = Level(**attribute(result, INPUTS_ATTRIBUTE)["settings"]["level"])
     finer_level = level._replace(cells=level.cells + FURTHER_CELLS, columns=level.columns + FURTHER_COLUMNS)
-    finer = compute_films(film, continue_solution(film, film_on_level(film, finer_level, SETTINGS, result), SETTINGS))
+    finer_films = compute_films(
+        film, continue_solution(film, film_on_level(film, finer_level, SETTINGS, result), SETTINGS)
+    )
     return {
         name: (float(result[f"{name}_error"]), abs(film.height_scale * thickness - float(result[name])))
-        for name, thickness in zip(FILM_NAMES, finer.thicknesses.tolist(), strict=True)
+        for name, thickness in zip(FILM_NAMES, finer_films.thicknesses.tolist(), strict=True)
     }
 
 
 def report_errors(seeds: range, accuracy: float) -> int:
     """Print the films whose stated errors cover the change to finer cells, and the medians of error over change."""
-    compared = []
+    compared_rows = []
     for seed in seeds:
         try:
             errors = compare_errors(seed, accuracy)
@@ -143,14 +145,19 @@ def report_errors(seeds: range, accuracy: float) -> int:
             print(f"seed {seed}: {error}", flush=True)
             continue
         if errors is not None:
-            compared.append(errors)
-            texts = (f"{name} {stated:.2g} m against {change:.2g}" for name, (stated, change) in errors.items())
+            compared_rows.append(errors)
+            texts = (
+                f"{name} {stated_error:.2g} m against {change:.2g}" for name, (stated_error, change) in errors.items()
+            )
             print(f"seed {seed}: {', '.join(texts)}", flush=True)
     for name in FILM_NAMES:
-        pairs = [errors[name] for errors in compared]
-        covered = sum(change <= stated for stated, change in pairs)
-        median = np.median([stated / max(change, 1e-12) for stated, change in pairs])
-        print(f"{name}: {covered} of {len(pairs)} covered, median of stated error over change {median:.1f}")
+        stated_and_changes = [errors[name] for errors in compared_rows]
+        covered_count = sum(change <= stated_error for stated_error, change in stated_and_changes)
+        median = np.median([stated_error / max(change, 1e-12) for stated_error, change in stated_and_changes])
+        print(
+            f"{name}: {covered_count} of {len(stated_and_changes)} covered, median of stated error over change "
+            f"{median:.1f}"
+        )
     return 0
 
 
@@ -166,16 +173,18 @@ def main() -> int:
     if options.finer:
         return report_errors(range(options.first, options.first + options.cases), options.accuracy)
     kinds: Counter[str] = Counter()
-    failed = []
+    failed_rows = []
     for seed in range(options.first, options.first + options.cases):
-        kind, text = outcome(seed, options.accuracy)
+        kind, text = solve_seed(seed, options.accuracy)
         kinds[kind] += 1
-        failed += [seed] if kind == "failed" else []
+        failed_rows += [seed] if kind == "failed" else []
         print(f"seed {seed}: {kind}: {text}", flush=True)
-    solved = options.cases - kinds["refused"]
+    solved_count = options.cases - kinds["refused"]
     print(", ".join(f"{count} {kind}" for kind, count in kinds.most_common()))
-    print(f"converged: {100 * (solved - kinds['failed']) / max(solved, 1):.1f} %; failed seeds: {failed}")
-    return int(bool(failed))
+    print(
+        f"converged: {100 * (solved_count - kinds['failed']) / max(solved_count, 1):.1f} %; failed seeds: {failed_rows}"
+    )
+    return int(bool(failed_rows))
 
 
 if __name__ == "__main__":

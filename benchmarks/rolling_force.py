@@ -1,8 +1,8 @@
 """Errors of the force of rolling between unlike bodies: ``python -m benchmarks.rolling_force [--cases 10]``.
 
-The table has the force in mid-length of a rigid roller on rows at several positions, minus that on 128 rows across the
-contact. ``--cases`` compares random rollers between free ends at accuracies 0.02 and 0.005 with 0.001, and counts the
-stated errors that hold.
+The table has the force at mid-length of a rigid roller on rows at several positions, less the force on 128 rows across
+the contact. ``--cases`` compares random rollers between free ends at accuracies 0.02 and 0.005 with 0.001, and counts
+the covered differences.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ CREEPAGES = (-0.3, 0.1, 0.4, 0.7)
 """Longitudinal creepages over ``f a / R``."""
 
 
-def middle_force(creepage: float, rows: int, position: float) -> float:
-    """Force in mid-length of a long rigid roller, over full sliding's, on `rows` across; `position` is in rows."""
+def compute_middle_force(creepage: float, rows: int, position: float) -> float:
+    """Force at mid-length of a long rigid roller over that of full sliding; `rows` across the contact, offset by
+    `position` rows."""
     case = cs.Case(
         body=cs.FiniteLengthSpace(length=LENGTH, material=STEEL),
         roller=cs.Roller(radius=RADIUS, length=LENGTH),
@@ -33,14 +34,14 @@ def middle_force(creepage: float, rows: int, position: float) -> float:
         friction=FRICTION,
         motion=cs.Rolling(longitudinal_creepage=creepage * FRICTION * HALF_WIDTH / RADIUS),
     )
-    row, count = 2 * HALF_WIDTH / rows, rows + 10
-    start = (position - 0.5 * count) * row
-    grid = cs.Grid.between(np.linspace(0, LENGTH, 4), (start, start + count * row), count)
-    middle = cs.solve(case, grid=grid, stresses=False).isel(x=1)
-    return float(middle["traction_y"].sum() / (FRICTION * middle["pressure"].sum()))
+    row_width, count = 2 * HALF_WIDTH / rows, rows + 10
+    start = (position - 0.5 * count) * row_width
+    grid = cs.Grid.between(np.linspace(0, LENGTH, 4), (start, start + count * row_width), count)
+    middle_column = cs.solve(case, grid=grid, stresses=False).isel(x=1)
+    return float(middle_column["traction_y"].sum() / (FRICTION * middle_column["pressure"].sum()))
 
 
-def random_case(rng: Random) -> cs.Case:
+def draw_case(rng: Random) -> cs.Case:
     """A rigid roller that rolls on a body with free ends."""
     pressure, friction = rng.uniform(0.8e9, 2e9), rng.uniform(0.05, 0.4)
     half_width = 2 * pressure * RADIUS / STEEL.plane_strain_modulus
@@ -57,35 +58,41 @@ def random_case(rng: Random) -> cs.Case:
 
 
 def compare_with_finer_cells(case: cs.Case, accuracies: tuple[float, ...] = (0.02, 0.005)) -> list[tuple[float, float]]:
-    """Differences of the force from that at accuracy 0.001, and both stated errors; over full sliding's force."""
-    reference, *results = (cs.solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.001, *accuracies))
-    full = case.friction * float(reference["normal_load"])
+    """Differences of the force from that at accuracy 0.001, and sums of both stated errors, over the force of full
+    sliding."""
+    reference_result, *results = (
+        cs.solve(case, accuracy=accuracy, stresses=False) for accuracy in (0.001, *accuracies)
+    )
+    full_sliding = case.friction * float(reference_result["normal_load"])
     return [
-        (float(result.force_y - reference.force_y) / full, float(result.force_y_error + reference.force_y_error) / full)
+        (
+            float(result.force_y - reference_result.force_y) / full_sliding,
+            float(result.force_y_error + reference_result.force_y_error) / full_sliding,
+        )
         for result in results
     ]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print the table or the comparisons; return 1 if fewer than 95 % of the stated errors hold."""
+    """Print the table or the comparisons; return 1 if the stated errors cover fewer than 95 % of the differences."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.rolling_force", description=__doc__)
     parser.add_argument("--cases", type=int, default=0, help="random cases; default: the table")
     parser.add_argument("--first", type=int, default=0, help="seed of the first case")
     options = parser.parse_args(arguments)
     comparisons: list[tuple[float, float]] = []
     for seed in range(options.first, options.first + options.cases):
-        comparisons += compare_with_finer_cells(random_case(Random(seed)))
+        comparisons += compare_with_finer_cells(draw_case(Random(seed)))
         print(
             f"{seed}: " + ", ".join(f"{change:+.4f} of {error:.4f}" for change, error in comparisons[-2:]), flush=True
         )
     if comparisons:
         changes, errors = np.abs(comparisons).T
-        part = (changes <= errors).mean()
-        print(f"covered {part:.0%}, median stated over actual error {np.median(errors / changes):.1f}")
-        return int(part < 0.95)
+        covered_fraction = (changes <= errors).mean()
+        print(f"covered {covered_fraction:.0%}, median stated over actual error {np.median(errors / changes):.1f}")
+        return int(covered_fraction < 0.95)
     for creepage, rows in product(CREEPAGES, (16, 32, 64)):
-        forces = np.array([middle_force(creepage, rows, position) for position in np.arange(-0.5, 0.5, 0.125)])
-        difference = forces - middle_force(creepage, 128, 0.0)
+        forces = np.array([compute_middle_force(creepage, rows, position) for position in np.arange(-0.5, 0.5, 0.125)])
+        difference = forces - compute_middle_force(creepage, 128, 0.0)
         print(f"creepage {creepage:4.1f}, {rows:3d} rows: {np.sqrt(np.mean(difference**2)):.4f} (root mean square)")
     return 0
 

@@ -1,4 +1,4 @@
-"""Stiffness of a roller of 12 x 12 mm in a ring of 18 mm under 8 kN, beside half-spaces and the formulas of bearings.
+"""Stiffness of a roller of 12 x 12 mm in a ring of 18 mm under 8 kN, against half-spaces and formulas for bearings.
 
 ``python -m benchmarks.stiffness`` prints the table of docs/how-to/contact_law.md.
 """
@@ -13,11 +13,11 @@ STEEL, LENGTH, LOAD = materials.BEARING_STEEL, 12e-3, 8e3
 RING_LENGTH, EFFECTIVE_LENGTH, END_DROP = 18e-3, 11.2e-3, 10e-6
 AMPLITUDE = 2 * LOAD / LENGTH / np.pi / STEEL.plane_strain_modulus
 CROWN = profiles.EffectiveLength(profiles.FujiwaraKawase(AMPLITUDE, END_DROP), EFFECTIVE_LENGTH)
-LOAD_STEP = 0.02  # relative change of the load on either side
+LOAD_STEP = 0.02  # relative change of the load for the central difference
 
 
-def contact_case(load: float, depths: tuple[float, float] | None) -> Case:
-    """Contact between free ends with depths of the reference in ring and roller, or (None) of half-spaces."""
+def make_case(load: float, depths: tuple[float, float] | None) -> Case:
+    """Contact between free ends with reference depths in ring and roller; None: contact of half-spaces."""
     ring_depth, roller_depth = depths or (None, None)
     roller = Roller(
         radius=Roller.combined_radius(6e-3, 40e-3),
@@ -35,33 +35,33 @@ def contact_case(load: float, depths: tuple[float, float] | None) -> Case:
     return Case(body=body, roller=roller, load=load)
 
 
-def solved_stiffness(depths: tuple[float, float] | None) -> float:
+def solve_stiffness(depths: tuple[float, float] | None) -> float:
     """Stiffness (N/um) by a central difference over the load."""
     loads = [(1 + sign * LOAD_STEP) * LOAD for sign in (-1, 1)]
-    approaches = [float(solve(contact_case(load, depths), stresses=False)["approach"]) for load in loads]
+    approaches = [float(solve(make_case(load, depths), stresses=False)["approach"]) for load in loads]
     return 1e-6 * (loads[1] - loads[0]) / (approaches[1] - approaches[0])
 
 
-def palmgren_stiffness() -> float:
+def compute_palmgren_stiffness() -> float:
     """Stiffness (N/um) of the approach ``3.84e-5 Q**0.9 / L**0.8`` (N, mm) of one contact."""
-    millimetres = 3.84e-5 * LOAD**0.9 / (1e3 * EFFECTIVE_LENGTH) ** 0.8
-    return 1e-3 * LOAD / (0.9 * millimetres)
+    approach_mm = 3.84e-5 * LOAD**0.9 / (1e3 * EFFECTIVE_LENGTH) ** 0.8
+    return 1e-3 * LOAD / (0.9 * approach_mm)
 
 
-def iso_stiffness() -> float:
+def compute_iso_stiffness() -> float:
     """Stiffness (N/um) of half the approach of both contacts, ``(Q / (35948 L**(8/9)))**0.9`` (N, mm)."""
-    millimetres = 0.5 * (LOAD / (35948 * (1e3 * EFFECTIVE_LENGTH) ** (8 / 9))) ** 0.9
-    return 1e-3 * LOAD / (0.9 * millimetres)
+    approach_mm = 0.5 * (LOAD / (35948 * (1e3 * EFFECTIVE_LENGTH) ** (8 / 9))) ** 0.9
+    return 1e-3 * LOAD / (0.9 * approach_mm)
 
 
 def main() -> None:
     """Print one row per model."""
     rows = {
-        "free ends, one length each": solved_stiffness((RING_LENGTH, LENGTH)),
-        "free ends, 18 and 6 mm": solved_stiffness((18e-3, 6e-3)),
-        "half-spaces, far away": solved_stiffness(None),
-        "Palmgren": palmgren_stiffness(),
-        "ISO/TS 16281": iso_stiffness(),
+        "free ends, one length each": solve_stiffness((RING_LENGTH, LENGTH)),
+        "free ends, 18 and 6 mm": solve_stiffness((18e-3, 6e-3)),
+        "half-spaces, far away": solve_stiffness(None),
+        "Palmgren": compute_palmgren_stiffness(),
+        "ISO/TS 16281": compute_iso_stiffness(),
     }
     for model, stiffness in rows.items():
         print(f"| {model} | {stiffness:.0f} |")

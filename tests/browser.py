@@ -1,4 +1,4 @@
-"""Chromium without a screen and without a network, for the explorer's pages."""
+"""Headless Chromium without a network, for the explorer's pages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-QUIET = (
+BROWSER_OPTIONS = (
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync"),
 )
@@ -18,15 +18,15 @@ SECONDS = 200
 """Longest wait for a page, also on a busy machine."""
 
 
-def chromium() -> str | None:
+def find_chromium() -> str | None:
     """Path of Chromium; None if it is not installed."""
     return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 def open_served(page: Any, address: str) -> None:
     """Open the page of a server, and wait for its figures."""
-    end = time.monotonic() + SECONDS
-    while time.monotonic() < end:
+    deadline = time.monotonic() + SECONDS
+    while time.monotonic() < deadline:
         with suppress(Exception):
             page.goto(address)
             break
@@ -39,19 +39,19 @@ def browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any
     """Page of a new browser; requests to other hosts are refused, and listed in `page.refused`."""
     from playwright.sync_api import sync_playwright
 
-    with sync_playwright() as player, tempfile.TemporaryDirectory() as profile:
-        context = player.chromium.launch_persistent_context(
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as profile:
+        context = playwright.chromium.launch_persistent_context(
             profile,
-            executable_path=chromium(),
+            executable_path=find_chromium(),
             headless=True,
-            args=list(QUIET),
+            args=list(BROWSER_OPTIONS),
             viewport={"width": width, "height": height},
         )
         page = context.new_page()
         page.set_default_timeout(SECONDS * 1000)
         page.refused = []
 
-        def judge(route: Any) -> None:
+        def filter_request(route: Any) -> None:
             address = route.request.url
             if address.startswith(("http://localhost", "http://127.0.0.1", "file:", "data:", "blob:")):
                 route.continue_()
@@ -60,7 +60,7 @@ def browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any
                 route.abort()
 
         if local_only:
-            page.route("**/*", judge)
+            page.route("**/*", filter_request)
         try:
             yield page
         finally:

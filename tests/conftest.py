@@ -1,4 +1,4 @@
-"""Bodies, rollers and pressures that many tests share; lengths are in units of a Hertz half-width, E* is 1."""
+"""Shared bodies, pressures and results; lengths are in units of the Hertz half-width, E* is 1."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from tests.stand_in_solver import FAILS, solve_fake
 
 
 @pytest.fixture(autouse=True)
-def _default_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let solvers that hold cases write every case at once, only within their test."""
+def _restore_run_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Restore the settings of runs after a test that changes `worker.RUN`."""
     monkeypatch.setattr(worker, "RUN", RunSettings())
 
 
@@ -52,20 +52,20 @@ def on_cells() -> Callable[..., xr.DataArray]:
 def strip_pressure(on_cells: Callable[..., xr.DataArray]) -> Callable[..., xr.DataArray]:
     """Hertz line pressure of half-width and peak 1, uniform along x over a whole body."""
 
-    def build(length: float, cells: tuple[int, int], window: float = 2.0) -> xr.DataArray:
+    def make_pressure(length: float, cells: tuple[int, int], window: float = 2.0) -> xr.DataArray:
         return on_cells(problems.strip, (0.0, length), (-window, window), cells)
 
-    return build
+    return make_pressure
 
 
 @pytest.fixture(scope="session")
 def cylinder_gap(on_cells: Callable[..., xr.DataArray]) -> Callable[..., xr.DataArray]:
     """Gap of a sharp-ended cylinder over a whole body; Hertz' half-width and peak pressure are 1."""
 
-    def build(length: float, cells: tuple[int, int], window: float = 2.0) -> xr.DataArray:
+    def make_gap(length: float, cells: tuple[int, int], window: float = 2.0) -> xr.DataArray:
         return on_cells(lambda x, y: y**2 + 0 * x, (0.0, length), (-window, window), cells)
 
-    return build
+    return make_gap
 
 
 LINE_LOAD = 0.5 * np.pi
@@ -79,7 +79,7 @@ def strip_result() -> Callable[..., xr.Dataset]:
     The body extends 1a beyond either end of the roller.
     """
 
-    def build(
+    def make_result(
         half_width: float = 1.0, max_pressure: float = 1.0, friction: float = 0.0, window: float = 3.0
     ) -> xr.Dataset:
         x = half_width * (np.arange(24) + 0.5) / 4
@@ -87,14 +87,18 @@ def strip_result() -> Callable[..., xr.Dataset]:
         x_field = half_width * np.linspace(1.0, 5.0, 9)
         y_field = half_width * np.linspace(-window, window, 121)
         z = half_width * np.linspace(0.1, 2.0, 39)
-        under = (x > half_width) & (x < 5 * half_width)
+        is_under_roller = (x > half_width) & (x < 5 * half_width)
         profile = max_pressure * np.sqrt(np.maximum(1 - (y / half_width) ** 2, 0))
-        gap = np.where(under[:, None], y**2 / half_width, np.inf)
+        gap = np.where(is_under_roller[:, None], y**2 / half_width, np.inf)
         stress = ref.hertz_strip(y_field[:, None], z, half_width, max_pressure, 0.3, friction)
         fields = {name: np.broadcast_to(value, (x_field.size, *value.shape)) for name, value in stress.items()}
         result = xr.Dataset(
             {
-                "pressure": (("x", "y"), np.outer(under, profile), {"units": "Pa", "long_name": "contact pressure"}),
+                "pressure": (
+                    ("x", "y"),
+                    np.outer(is_under_roller, profile),
+                    {"units": "Pa", "long_name": "contact pressure"},
+                ),
                 "initial_gap": (("x", "y"), gap, {"units": "m"}),
                 "hertz_half_width": half_width,
                 "hertz_max_pressure": max_pressure,
@@ -104,18 +108,19 @@ def strip_result() -> Callable[..., xr.Dataset]:
         )
         return result.assign(von_mises=von_mises(result))
 
-    return build
+    return make_result
 
 
 @pytest.fixture(scope="session")
 def case_result() -> xr.Dataset:
-    """Steel with two free ends, a roller that begins one half-width inside, friction: the real solver."""
+    """Solved case with friction: a steel body with two free ends, the roller one half-width inside."""
     return solved_case()
 
 
 @pytest.fixture(scope="session")
 def study_dataset(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Dataset of a study with made-up fields: e/a, a failing friction, two bodies, the half-space for e = 0 only."""
+    """Study of the stand-in solver over e/a, two frictions (one fails) and two bodies; the half-space for e = 0
+    only."""
     folder = tmp_path_factory.mktemp("results")
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.1, FAILS], "body": ["finite-length", "half-space"]},

@@ -1,4 +1,4 @@
-"""Cases of a short crowned steel roller on a body that is 20 half-widths long."""
+"""Cases of a short crowned steel roller on a body of 20 half-widths."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ BODY = FiniteLengthSpace(length=LENGTH, material=STEEL)
 CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
 
 
-def case_with(**arguments) -> Case:
+def make_crowned_case(**arguments) -> Case:
     """The crowned roller at 1 GPa, changed by `arguments`."""
     roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
     return Case(**({"body": BODY, "roller": roller, "max_pressure": 1e9} | arguments))

@@ -1,4 +1,4 @@
-"""Print the table of docs/explanation/accuracy.md: checks of the verification suite, and a few seconds.
+"""Print the table of docs/explanation/accuracy.md: checks of the verification suite, and computing times.
 
 Run ``python -m tests.measured`` in an environment with the development extra; `contactstudy verify --level full` prints
 all checks.
@@ -76,7 +76,7 @@ ROWS = {  # label in the table: group, part of the case's name, part of the quan
 }
 
 
-def accuracy() -> Iterator[tuple[str, str]]:
+def measure_accuracy() -> Iterator[tuple[str, str]]:
     """Largest difference among the checks of each row."""
     verification = run("full")
     assert verification.passed
@@ -86,35 +86,37 @@ def accuracy() -> Iterator[tuple[str, str]]:
     yield "checks of `contactstudy verify --level full`, all passed", str(len(verification.checks))
 
 
-def ends() -> Iterator[tuple[str, str]]:
-    """Effects of free ends, one number each."""
+def measure_end_effects() -> Iterator[tuple[str, str]]:
+    """Effects of free ends on the pressure."""
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
-    along = solve_contact(body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
+    axial_pressure = solve_contact(body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
     yield (
         "rigid cylinder on a body of equal length (8a): pressure at the end, in the middle",
-        f"{float(along[0]):.3f} p0, {float(along[64]):.3f} p0",
+        f"{float(axial_pressure[0]):.3f} p0, {float(axial_pressure[64]):.3f} p0",
     )
     for count in (64, 129):
-        on_half = on_cells(lambda x, y: y**2 + 0 * x, (-0.5, 8.5), (-2, 2), (round(count * 9 / 8), 65))
-        on_half = on_half.where(abs(on_half["x"] - 4) < 4, np.inf)
-        peak = float(solve_contact(HalfSpace(material=unit_material()), on_half, load=8 * LINE_LOAD)["pressure"].max())
+        half_space_gap = on_cells(lambda x, y: y**2 + 0 * x, (-0.5, 8.5), (-2, 2), (round(count * 9 / 8), 65))
+        half_space_gap = half_space_gap.where(abs(half_space_gap["x"] - 4) < 4, np.inf)
+        peak = float(
+            solve_contact(HalfSpace(material=unit_material()), half_space_gap, load=8 * LINE_LOAD)["pressure"].max()
+        )
         yield f"... the half-space model's pressure there with {count} cells", f"{peak:.2f} p0"
 
 
-def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
-    """Seconds of the parts of one case of ``studies/edge_effect.toml``, on one core."""
+def measure_times() -> Iterator[tuple[str, str]]:
+    """Computing times of one case of ``studies/edge_effect.toml``, on one core."""
     plan = Study.from_toml(Path(__file__).parents[1] / "studies" / "edge_effect.toml").plan()
     setup = build_setup(next(c.parameters for c in plan if c.parameters.get("e_over_a") == 1.0))
     case = setup.case
     positions = {name: setup.options[name] for name in ("x", "y", "z")}
 
-    def time_work(work: Callable[[], T]) -> tuple[float, T]:
+    def time_call(function: Callable[[], T]) -> tuple[float, T]:
         start_time = time.perf_counter()
-        output = work()
+        output = function()
         return time.perf_counter() - start_time, output
 
-    seconds, result = time_work(lambda: solve(case, stresses=False))
+    seconds, result = time_call(lambda: solve(case, stresses=False))
     yield (
         f"refined cells of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
         f"{result.sizes['x']} x {result.sizes['y']} cells",
@@ -122,21 +124,21 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
     yield "contact converged to 1 %, and the residual traction on the ends", f"{seconds:.1f} s"
     pressure = result["pressure"]
 
-    def stresses(friction: float) -> xr.Dataset:
+    def compute_stresses(friction: float) -> xr.Dataset:
         return stress_field(case.body, pressure, friction=friction, **positions, inside_cells=pressure)
 
-    seconds, _ = time_work(lambda: stresses(0.0))
+    seconds, _ = time_call(lambda: compute_stresses(0.0))
     yield f"six stresses at {' x '.join(str(len(axis)) for axis in positions.values())} points", f"{seconds:.1f} s"
-    seconds, _ = time_work(lambda: stresses(0.1))
+    seconds, _ = time_call(lambda: compute_stresses(0.1))
     yield "... with friction, the first time", f"{seconds:.1f} s"
-    seconds, _ = time_work(lambda: stresses(0.2))
+    seconds, _ = time_call(lambda: compute_stresses(0.2))
     yield "... with any further friction", f"{seconds:.2f} s"
 
 
 def main() -> None:
     """Print the table."""
     print("| quantity | measured |\n|---|---|")
-    for section in (accuracy, ends, parts_of_the_main_job):
+    for section in (measure_accuracy, measure_end_effects, measure_times):
         for quantity, value in section():
             print(f"| {quantity} | {value} |", flush=True)
 

@@ -1,4 +1,4 @@
-"""Plugin of pytest: with the environment variable CI a skip is a failure."""
+"""Plugin of pytest: a skip is a failure if the environment variable CI is set."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 from sybil.integration.pytest import SybilItem
 
 
-def _refuse(report: pytest.TestReport | pytest.CollectReport) -> None:
-    """Turn a skip into a failure if skips are forbidden."""
+def fail_skip(report: pytest.TestReport | pytest.CollectReport) -> None:
+    """Turn a skip into a failure if CI is set."""
     if not os.environ.get("CI") or not report.skipped or hasattr(report, "wasxfail"):
         return
     reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
@@ -20,16 +20,16 @@ def _refuse(report: pytest.TestReport | pytest.CollectReport) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Forbid skipped tests; blocks of the documentation state the reason in their page."""
+    """Fail skipped tests, except blocks of the documentation, whose page contains the reason."""
     report = yield
     if not isinstance(item, SybilItem):
-        _refuse(report)
+        fail_skip(report)
     return report
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Forbid skipped files."""
+    """Fail skipped files."""
     report = yield
-    _refuse(report)
+    fail_skip(report)
     return report

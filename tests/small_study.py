@@ -1,4 +1,4 @@
-"""A study of four small cases that many tests share."""
+"""A shared study of four small cases."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def identity(**changes) -> str:
     return case_id(BASE | changes)
 
 
-def as_toml(study: Study) -> str:
+def format_toml(study: Study) -> str:
     """A study as a TOML file; JSON's numbers, texts and lists are TOML as well."""
     lines = [f"name = {json.dumps(study.name)}", f"level = {json.dumps(study.level)}"]
     for table in ("base", "sweep"):

@@ -75,13 +75,13 @@ def solve_fake(
         depth = np.broadcast_to(points["z"] / half_width, shape)
         # The maximum lies in the middle of the points, not at their border.
         x, y = (np.linspace(-1, 1, size) if size > 1 else np.zeros(1) for size in shape[:2])
-        hill = (1 - 0.1 * x[:, None, None] ** 2) * (1 - 0.1 * y[:, None] ** 2)
-        stress = [-peak * hill * np.exp(-depth) / (1 + index) for index in range(len(STRESSES))]
+        shape_factor = (1 - 0.1 * x[:, None, None] ** 2) * (1 - 0.1 * y[:, None] ** 2)
+        stress = [-peak * shape_factor * np.exp(-depth) / (1 + index) for index in range(len(STRESSES))]
         fields = dict(zip((*STRESSES, "von_mises"), [*stress, von_mises_of(*stress)], strict=True))
-        largest = np.unravel_index(fields["von_mises"].argmax(), shape)
+        peak_index = np.unravel_index(fields["von_mises"].argmax(), shape)
         variables |= {name: (tuple(points), values) for name, values in fields.items()}
-        variables["peak_von_mises"] = fields["von_mises"][largest]
-        for axis, positions, index in zip("xyz", points.values(), largest, strict=True):
+        variables["peak_von_mises"] = fields["von_mises"][peak_index]
+        for axis, positions, index in zip("xyz", points.values(), peak_index, strict=True):
             variables[f"peak_von_mises_{axis}"] = positions[index]
         variables["peak_von_mises_error"] = 0.01 * variables["peak_von_mises"]
         coordinates |= points

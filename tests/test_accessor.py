@@ -1,4 +1,4 @@
-"""Dataset.contact: methods equal the functions, for every order of imports."""
+"""Dataset.contact: its methods equal the functions of the package, for every order of imports."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ FUNCTIONS = sorted(
 @pytest.mark.parametrize("name", [*FUNCTIONS, "summary", "assess", "citations"])
 def test_accessor_methods_equal_functions(case_result: xr.Dataset, name: str) -> None:
     arguments = ARGUMENTS.get(name, ())
-    positional, options = ((), arguments) if isinstance(arguments, dict) else (arguments, {})
-    result = getattr(case_result.contact, name)(*positional, **options)
-    expected = getattr(analysis if name in FUNCTIONS else report, name)(case_result, *positional, **options)
+    positional_arguments, options = ((), arguments) if isinstance(arguments, dict) else (arguments, {})
+    result = getattr(case_result.contact, name)(*positional_arguments, **options)
+    expected = getattr(analysis if name in FUNCTIONS else report, name)(case_result, *positional_arguments, **options)
     assert result.identical(expected) if hasattr(result, "identical") else repr(result) == repr(expected)
 
 
@@ -42,14 +42,14 @@ def test_accessor_signatures_match_functions() -> None:
     assert list(method.parameters.values()) == list(function.parameters.values())[1:]
 
 
-def test_the_accessor_shows_the_main_numbers(case_result: xr.Dataset, study_dataset: xr.Dataset) -> None:
+def test_accessor_text_contains_main_values(case_result: xr.Dataset, study_dataset: xr.Dataset) -> None:
     assert repr(case_result.contact) == repr(case_result.contact.summary())
     assert "1.5 GPa" in case_result.contact._repr_html_()
     assert repr(study_dataset.contact).startswith("study of 12 cases over e_over_a (3), friction (2), body (2): ")
     assert "<pre>study of" in study_dataset.contact._repr_html_()
 
 
-def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
+def test_accessor_of_opened_file_equals_result(case_result: xr.Dataset, tmp_path) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     with xr.open_dataset(tmp_path / "case.nc") as stored_result:
         assert float(stored_result.contact.largest_sample()["largest_von_mises"]) == float(
@@ -62,7 +62,7 @@ def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
 
 @pytest.mark.system
 @pytest.mark.parametrize(
-    "first",
+    "import_statement",
     [
         "import xarray, contactstudy",
         "import contactstudy.accessor",
@@ -73,8 +73,8 @@ def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
         "import contactstudy as cs; cs.open_study",
     ],
 )
-def test_accessor_is_registered_in_any_import_order(first: str) -> None:
-    code = f"{first}\nimport xarray\nxarray.Dataset().contact"
+def test_accessor_is_registered_in_any_import_order(import_statement: str) -> None:
+    code = f"{import_statement}\nimport xarray\nxarray.Dataset().contact"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

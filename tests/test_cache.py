@@ -15,44 +15,44 @@ from contactstudy.checks import FloatArray
 
 
 @pytest.fixture(autouse=True)
-def fresh() -> Iterator[None]:
+def empty_cache() -> Iterator[None]:
     cache.clear()
     yield
     cache.limit(cache.LIMIT)
     cache.clear()
 
 
-def recording_function(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
+def make_recording_function(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
     """Return a cached function of values as long as their names, and the list of its calls."""
     call_list: list[str] = []
 
     @cached(kind)
-    def make(name: str) -> FloatArray:
+    def encode(name: str) -> FloatArray:
         call_list.append(name)
         return np.frombuffer(name.encode(), np.uint8)
 
-    return make, call_list
+    return encode, call_list
 
 
 def test_cache_drops_least_recently_used_value() -> None:
     cache.limit(10)
-    make, calls = recording_function("letters")
+    encode, calls = make_recording_function("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
-        assert make(name).tobytes().decode() == name
+        assert encode(name).tobytes().decode() == name
     assert calls == ["aaaa", "bbbb", "cccc"]
-    make("aaaa")
+    encode("aaaa")
     assert calls == ["aaaa", "bbbb", "cccc"]
-    make("bbbb")
+    encode("bbbb")
     assert calls[-1] == "bbbb"
 
 
 def test_oversized_value_is_not_cached() -> None:
     cache.limit(5)
-    make, calls = recording_function("letters")
-    make("aaaa")
-    make("larger than all")
-    make("larger than all")
-    make("aaaa")
+    encode, calls = make_recording_function("letters")
+    encode("aaaa")
+    encode("larger than all")
+    encode("larger than all")
+    encode("aaaa")
     assert calls == ["aaaa", "larger than all", "larger than all"]
 
 
@@ -66,8 +66,8 @@ def test_keyword_arguments_belong_to_key() -> None:
 
 
 def test_kinds_have_separate_keys() -> None:
-    first_function, _ = recording_function("first")
-    second_function, calls = recording_function("second")
+    first_function, _ = make_recording_function("first")
+    second_function, calls = make_recording_function("second")
     first_function("same")
     second_function("same")
     assert calls == ["same"]
@@ -76,22 +76,22 @@ def test_kinds_have_separate_keys() -> None:
 
 
 def test_cache_info_counts_reuse() -> None:
-    make, _ = recording_function("counted")
+    encode, _ = make_recording_function("counted")
     for name in ("aa", "aa", "bbb"):
-        make(name)
+        encode(name)
     info = cache.info().kinds["counted"]
     assert (info.values, info.nbytes, info.computed, info.reused) == (2, 5, 2, 1)
     assert "counted: 2 in" in str(cache.info())
 
 
 def test_smaller_limit_drops_oldest_values() -> None:
-    make, calls = recording_function("letters")
+    encode, calls = make_recording_function("letters")
     for name in ("aaaa", "bbbb", "cccc"):
-        make(name)
+        encode(name)
     cache.limit(8)
     assert cache.info().nbytes == 8
-    make("cccc")
-    make("bbbb")
+    encode("cccc")
+    encode("bbbb")
     assert calls == ["aaaa", "bbbb", "cccc"]
     cache.limit(0)
     assert cache.info().nbytes == 0
@@ -107,11 +107,11 @@ def test_threads_share_cached_value() -> None:
     barrier, shared_arrays = Barrier(4), []
 
     @cached("shared")
-    def make(size: int) -> np.ndarray:
+    def encode(size: int) -> np.ndarray:
         barrier.wait()  # all four threads have missed
         return np.zeros(size)
 
-    threads = [Thread(target=lambda: shared_arrays.append(make(8))) for _ in range(4)]
+    threads = [Thread(target=lambda: shared_arrays.append(encode(8))) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -138,10 +138,10 @@ def test_arrays_of_values_are_read_only() -> None:
     Factors.__module__ = "contactstudy.tests"
 
     @cached("read-only")
-    def factors(size: int) -> Factors:
+    def make_factors(size: int) -> Factors:
         return Factors(np.ones(size), {"upper": [np.ones(size)]})
 
-    factors_value = factors(3)
-    assert not factors_value.lower.flags.writeable
-    assert not factors_value.by_name["upper"][0].flags.writeable
+    factors = make_factors(3)
+    assert not factors.lower.flags.writeable
+    assert not factors.by_name["upper"][0].flags.writeable
     assert cache.info().nbytes == 48

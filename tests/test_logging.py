@@ -13,7 +13,7 @@ from contactstudy import Case, HalfSpace, Material, Roller, solve
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
 from contactstudy.cli import main
 from contactstudy.study import run_study
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 BODY = HalfSpace(material=Material(210e9, 0.3))
@@ -25,8 +25,8 @@ def test_solution_stages_are_logged(caplog: pytest.LogCaptureFixture) -> None:
         result = solve(CASE, y=[0.0], z=[1e-5])
     messages = [record.getMessage() for record in caplog.records]
     assert all(record.name.startswith("contactstudy.") for record in caplog.records)
-    for beginning in ("refined to ", "contact: ", "stresses: "):
-        assert any(text.startswith(beginning) for text in messages), beginning
+    for prefix in ("refined to ", "contact: ", "stresses: "):
+        assert any(message.startswith(prefix) for message in messages), prefix
     run = attribute(result, RUN_ATTRIBUTE)
     assert set(run["stages"]) == {"contact", "stresses"}
     assert run["seconds"] == pytest.approx(sum(run["stages"].values()), abs=1e-3)
@@ -43,19 +43,19 @@ def test_study_progress_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixtu
 
 
 def test_verbose_option_logs_to_stderr(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    (tmp_path / "small.toml").write_text(as_toml(small_study()))
+    (tmp_path / "small.toml").write_text(format_toml(small_study()))
     arguments = ["run", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out"), "--workers", "0", "--no-figure"]
     logger = logging.getLogger("contactstudy")
-    previous = logger.level
+    previous_level = logger.level
     try:
         assert main(["--verbose", *arguments], solver=solve_fake) == 0
         assert logger.level == logging.INFO
     finally:
-        logger.setLevel(previous)
+        logger.setLevel(previous_level)
     assert any("4/4 cases" in record.getMessage() for record in caplog.records)
 
 
-def test_versions_from_the_command(capsys: pytest.CaptureFixture[str]) -> None:
+def test_versions_option_prints_packages(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--versions"]) == 0
     assert "numpy" in capsys.readouterr().out
 

@@ -1,4 +1,4 @@
-"""A skip fails in CI, and is a skip elsewhere."""
+"""A skipped test fails in CI."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAM = "import pytest\n\ndef test_a():\n    pytest.skip('no program')\n"
-MODULE = "import pytest\n\npytest.importorskip('no_such_module')\n\ndef test_a():\n    pass\n"
+SKIPPED_TEST = "import pytest\n\ndef test_a():\n    pytest.skip('no program')\n"
+SKIPPED_MODULE = "import pytest\n\npytest.importorskip('no_such_module')\n\ndef test_a():\n    pass\n"
 
 
 @pytest.mark.system
-@pytest.mark.parametrize("content", [PROGRAM, MODULE])
+@pytest.mark.parametrize("content", [SKIPPED_TEST, SKIPPED_MODULE])
 @pytest.mark.parametrize(("ci", "fails"), [("1", True), ("", False)])
 def test_skipped_test_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: bool) -> None:
     (tmp_path / "test_it.py").write_text(content)

@@ -1,4 +1,4 @@
-"""The package's public names, and the cost of its import."""
+"""Public names of the package, and the modules that its import loads."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ import contactstudy
 
 @pytest.mark.system
 @pytest.mark.parametrize(
-    ("module", "heavy"),
+    ("module", "heavy_modules"),
     [
         ("contactstudy", {"numpy", "xarray", "scipy", "matplotlib", "dask"}),
         ("contactstudy.study.worker", {"scipy.interpolate", "scipy.optimize", "matplotlib", "distributed"}),
     ],
 )
-def test_import_avoids_heavy_modules(module: str, heavy: set[str]) -> None:
-    code = f"import {module}, sys; print(sorted({heavy} & set(sys.modules)))"
+def test_import_avoids_heavy_modules(module: str, heavy_modules: set[str]) -> None:
+    code = f"import {module}, sys; print(sorted({heavy_modules} & set(sys.modules)))"
     finished_process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert finished_process.stdout.strip() == "[]"
 

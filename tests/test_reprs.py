@@ -27,8 +27,8 @@ def test_reprs_use_engineering_units() -> None:
         FullCrown(1.25) + Cylinder(3e-4): "FullCrown(crown_radius=1250 mm) + Cylinder(fillet_radius=0.3 mm)",
         Halves(Cylinder(), FullCrown(1.0)): "Halves(left=Cylinder(), right=FullCrown(crown_radius=1000 mm))",
     }
-    for value, text in expected_texts.items():
-        assert repr(value) == text
+    for value, expected in expected_texts.items():
+        assert repr(value) == expected
 
 
 def test_measured_profile_repr_omits_points() -> None:
@@ -65,9 +65,7 @@ def test_study_repr_contains_swept_parameters() -> None:
     assert "20 values, 0 to 19" in repr(small_study(sweep={"e_over_a": list(range(20))}))
 
 
-def test_equal_cases_share_preparation() -> None:
-    """Texts are rounded; identities are not."""
-    close_case = [
-        build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)
-    ]
-    assert close_case[0] == close_case[2] != close_case[1]
+def test_setup_keeps_all_digits_of_parameters() -> None:
+    """Identities round parameters; set-up cases must not."""
+    bodies = [build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)]
+    assert bodies[0] == bodies[2] != bodies[1]

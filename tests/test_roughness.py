@@ -18,8 +18,8 @@ GRID = Grid(x_range=(0.0, 1e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=250, cells_y
 SURFACE_PARAMETERS = {"rms_height": 0.2e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 20e-6, "seed": 1}
 
 
-def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Wavenumber over 2 pi and power of every wave, from a complex transform."""
+def compute_spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Wavenumber divided by 2 pi and power of each wave, from the complex Fourier transform."""
     x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.fftfreq(grid.cells_y, grid.dy)
     return np.hypot(x[:, None], y), np.abs(np.fft.fft2(height.values)) ** 2
 
@@ -29,8 +29,8 @@ def test_self_affine_height_has_requested_spectrum(rms: float, hurst: float, see
     height = self_affine(GRID, **SURFACE_PARAMETERS | {"rms_height": rms, "hurst": hurst, "seed": seed})
     assert float(np.sqrt((height**2).mean())) == pytest.approx(rms, rel=1e-12)
     assert abs(float(height.mean())) < 1e-10 * rms
-    frequency, power = spectrum(height, GRID)
-    outside_band = (frequency < 1 / 0.41e-3) | (frequency > 1 / 19.9e-6)
+    wavenumber, power = compute_spectrum(height, GRID)
+    outside_band = (wavenumber < 1 / 0.41e-3) | (wavenumber > 1 / 19.9e-6)
     assert power[outside_band].max() < 1e-20 * power.max()
 
 
@@ -38,9 +38,9 @@ def test_self_affine_height_has_requested_spectrum(rms: float, hurst: float, see
 def test_spectrum_falls_with_the_hurst_exponent(hurst: float) -> None:
     grid = Grid(x_range=(0.0, 1.0), y_range=(0.0, 2.0), cells_x=256, cells_y=512)
     height = self_affine(grid, rms_height=1.0, hurst=hurst, longest=0.5, shortest=0.02, seed=3)
-    frequency, power = spectrum(height, grid)
-    in_band = (frequency > 2.0) & (frequency < 50.0)
-    slope = np.polyfit(np.log(frequency[in_band]), np.log(power[in_band]), 1)[0]
+    wavenumber, power = compute_spectrum(height, grid)
+    in_band = (wavenumber > 2.0) & (wavenumber < 50.0)
+    slope = np.polyfit(np.log(wavenumber[in_band]), np.log(power[in_band]), 1)[0]
     assert slope == pytest.approx(-2 * (1 + hurst), abs=0.1)
 
 
@@ -58,11 +58,11 @@ def test_seed_determines_surface() -> None:
     assert np.abs(first_surface - self_affine(GRID, **SURFACE_PARAMETERS | {"seed": 2})).max() > 1e-7
 
 
-def test_a_smooth_surface_is_allowed() -> None:
+def test_surface_of_zero_rms_is_smooth() -> None:
     assert not self_affine(GRID, **SURFACE_PARAMETERS | {"rms_height": 0.0}).any()
 
 
-def test_attributes_follow_cf_and_survive_a_file(tmp_path: Path) -> None:
+def test_stored_height_map_equals_original(tmp_path: Path) -> None:
     height = self_affine(GRID, **SURFACE_PARAMETERS)
     assert height.attrs["units"] == "m"
     assert "seed=1" in height.attrs["source"]
@@ -71,40 +71,46 @@ def test_attributes_follow_cf_and_survive_a_file(tmp_path: Path) -> None:
     np.testing.assert_allclose(read_height_map(tmp_path / "map.nc", GRID), height, atol=1e-18)
 
 
-def tilted_plane(x, y):
+def compute_tilted_plane(x, y):
     return 1e-6 + 2e-3 * x - 5e-3 * y
 
 
 X, Y = 1e-3 * np.arange(0, 11) / 10, 1e-3 * np.arange(-5, 6) / 10
 
 
-def csv_map(
-    path: Path, drop: tuple[int, ...] = (), more: str = "", header: str = "x [mm], y [mm], height [um]"
+def write_csv_map(
+    path: Path, omitted_rows: tuple[int, ...] = (), appended: str = "", header: str = "x [mm], y [mm], height [um]"
 ) -> Path:
-    rows = [f"{1e3 * x:.9g}, {1e3 * y:.9g}, {1e6 * tilted_plane(x, y):.9g}" for x in X for y in Y]
-    path.write_text("\n".join([header, *(row for index, row in enumerate(rows) if index not in drop)]) + more)
+    rows = [f"{1e3 * x:.9g}, {1e3 * y:.9g}, {1e6 * compute_tilted_plane(x, y):.9g}" for x in X for y in Y]
+    path.write_text(
+        "\n".join([header, *(row for index, row in enumerate(rows) if index not in omitted_rows)]) + appended
+    )
     return path
 
 
-def test_csv_is_read_and_interpolated(tmp_path: Path) -> None:
-    height = read_height_map(csv_map(tmp_path / "map.csv"), GRID)
-    np.testing.assert_allclose(height, tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
+def test_csv_map_is_interpolated(tmp_path: Path) -> None:
+    height = read_height_map(write_csv_map(tmp_path / "map.csv"), GRID)
+    np.testing.assert_allclose(height, compute_tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
     assert height.attrs["source"] == "measured, map.csv"
 
 
-def test_netcdf_is_read_in_any_order_of_dimensions(tmp_path: Path) -> None:
+def test_netcdf_map_may_have_any_order_of_dimensions(tmp_path: Path) -> None:
     values = xr.DataArray(
-        1e9 * tilted_plane(X, Y[:, None]), {"y": 1e6 * Y, "x": X}, ("y", "x"), name="height", attrs={"units": "nm"}
+        1e9 * compute_tilted_plane(X, Y[:, None]),
+        {"y": 1e6 * Y, "x": X},
+        ("y", "x"),
+        name="height",
+        attrs={"units": "nm"},
     )
     values["x"].attrs["units"] = "m"
     values["y"].attrs["units"] = "um"
     values.to_netcdf(tmp_path / "map.nc")
     height = read_height_map(tmp_path / "map.nc", GRID)
-    np.testing.assert_allclose(height, tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
+    np.testing.assert_allclose(height, compute_tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
 
 
-def test_slope_is_removed_on_request(tmp_path: Path) -> None:
-    height = read_height_map(csv_map(tmp_path / "map.csv"), GRID, remove_slope=True)
+def test_remove_slope_removes_plane(tmp_path: Path) -> None:
+    height = read_height_map(write_csv_map(tmp_path / "map.csv"), GRID, remove_slope=True)
     assert float(np.abs(height).max()) < 1e-14
 
 
@@ -122,7 +128,7 @@ def test_slope_is_removed_on_request(tmp_path: Path) -> None:
         ({"seed": None}, "seed = None"),
     ],
 )
-def test_bad_values_are_named(changes, message: str) -> None:
+def test_invalid_surface_parameter_raises(changes, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         self_affine(GRID, **SURFACE_PARAMETERS | changes)
 
@@ -131,28 +137,28 @@ def test_missing_grid_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="grid = 'fine'"):
         self_affine("fine", **SURFACE_PARAMETERS)
     with pytest.raises(InvalidInputError, match="grid = None"):
-        read_height_map(csv_map(tmp_path / "map.csv"), None)
+        read_height_map(write_csv_map(tmp_path / "map.csv"), None)
 
 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"drop": (3,)}, "height = 'missing or not finite at x = 0 m, y = -0.0002 m'"),
-        ({"drop": tuple(range(11 * 4, 11 * 8))}, "x = '1 gaps: 0.0003 to 0.0008 m'"),
-        ({"more": "\n0, 0, 7"}, "height = '2 values at x = 0 m, y = 0 m'"),
-        ({"more": "\n0, , 7"}, "y = 'nan at position"),
+        ({"omitted_rows": (3,)}, "height = 'missing or not finite at x = 0 m, y = -0.0002 m'"),
+        ({"omitted_rows": tuple(range(11 * 4, 11 * 8))}, "x = '1 gaps: 0.0003 to 0.0008 m'"),
+        ({"appended": "\n0, 0, 7"}, "height = '2 values at x = 0 m, y = 0 m'"),
+        ({"appended": "\n0, , 7"}, "y = 'nan at position"),
         ({"header": "x [mm], y [mm], height [kg]"}, "unit of height = 'kg'"),
         ({"header": "x [mm], y, height [um]"}, "unit of y = None"),
         ({"header": "x [mm], z [mm], height [um]"}, "columns"),
         ({"header": "x [um], y [mm], height [um]"}, "grid.x = '2e-06 to 0.000998 m': must be within the measured"),
     ],
 )
-def test_bad_csv_maps_are_named(tmp_path: Path, changes, message: str) -> None:
+def test_invalid_csv_map_raises(tmp_path: Path, changes, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        read_height_map(csv_map(tmp_path / "map.csv", **changes), GRID)
+        read_height_map(write_csv_map(tmp_path / "map.csv", **changes), GRID)
 
 
-def test_bad_netcdf_maps_are_named(tmp_path: Path) -> None:
+def test_invalid_netcdf_map_raises(tmp_path: Path) -> None:
     xr.Dataset({"height": ("x", X, {"units": "m"})}, {"x": ("x", X, {"units": "m"})}).to_netcdf(tmp_path / "line.nc")
     with pytest.raises(InvalidInputError, match="height along x and y"):
         read_height_map(tmp_path / "line.nc", GRID)
@@ -165,22 +171,22 @@ def test_bad_netcdf_maps_are_named(tmp_path: Path) -> None:
         read_height_map(tmp_path / "units.nc", GRID, remove_slope="yes")
 
 
-def test_height_map_is_placed_turned_and_detrended(tmp_path: Path) -> None:
+def test_instrument_map_is_placed_and_form_removed(tmp_path: Path) -> None:
     x, y = 2e-6 * np.arange(501), 5e-6 * np.arange(201)
-    wave = 1e-7 * np.sin(2 * np.pi * x / 0.1e-3)[:, None] * np.cos(2 * np.pi * y / 0.2e-3)
-    form = 1e-6 + 3e-3 * x[:, None] - 1e-3 * y - (y - 0.6e-3) ** 2 / 0.012 + 0.4 * x[:, None] * y
-    x3pio.write(tmp_path / "map.x3p", (wave + form).T, x_scale=2e-6, y_scale=5e-6)
+    waves = 1e-7 * np.sin(2 * np.pi * x / 0.1e-3)[:, None] * np.cos(2 * np.pi * y / 0.2e-3)
+    surface_form = 1e-6 + 3e-3 * x[:, None] - 1e-3 * y - (y - 0.6e-3) ** 2 / 0.012 + 0.4 * x[:, None] * y
+    x3pio.write(tmp_path / "map.x3p", (waves + surface_form).T, x_scale=2e-6, y_scale=5e-6)
     corner = (GRID.x_range[0], GRID.y_range[0])
     height_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_form=True)
     expected = np.sin(2 * np.pi * GRID.x / 0.1e-3)[:, None] * np.cos(2 * np.pi * (GRID.y - corner[1]) / 0.2e-3)
     np.testing.assert_allclose(height_map, 1e-7 * expected, atol=3e-9)
-    without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
-    assert float(without_slope.max() - without_slope.min()) > 10 * float(height_map.max() - height_map.min())
+    map_without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
+    assert float(map_without_slope.max() - map_without_slope.min()) > 10 * float(height_map.max() - height_map.min())
     restored_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
     np.testing.assert_allclose(restored_map.values[::-1], height_map.values, atol=3e-9)
 
 
-def test_bad_maps_of_instruments_are_named(tmp_path: Path) -> None:
+def test_invalid_instrument_map_raises(tmp_path: Path) -> None:
     x3pio.Profile.from_array(np.zeros(9), x_scale=1e-6).save(tmp_path / "line.x3p")
     with pytest.raises(InvalidInputError, match="it holds one line"):
         read_height_map(tmp_path / "line.x3p", GRID)

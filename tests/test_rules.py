@@ -1,4 +1,5 @@
-"""Rules of CONTRIBUTING.md: short positional sequences, bound and marked constants, no circular imports, test files."""
+"""Rules of CONTRIBUTING.md: few positional arguments, constants bound once, no circular imports, one module per
+test."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT
 STUBS = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.pyi"))}
 
 
-def violations(modules: dict[str, str]) -> list[str]:
+def find_violations(modules: dict[str, str]) -> list[str]:
     """Violations in the source text of modules: module, line and rule."""
     trees = {name: list(ast.walk(ast.parse(text))) for name, text in modules.items()}
     nodes = [node for tree in trees.values() for node in tree]
@@ -37,19 +38,19 @@ def violations(modules: dict[str, str]) -> list[str]:
         f"{name}:{getattr(node, 'lineno', 1)}: {rule}"
         for name, tree in trees.items()
         for node in tree
-        for rule in broken_rules(node, classes, variadic)
+        for rule in list_broken_rules(node, classes, variadic)
     ]
 
 
-def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[str]) -> Iterator[str]:
+def list_broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[str]) -> Iterator[str]:
     """Rules that a module, a class, a call or a function breaks."""
     if isinstance(node, ast.Module | ast.ClassDef):
-        names = Counter(bound_names(node))
+        names = Counter(list_bound_names(node))
         yield from (f"{name} is bound {count} times" for name, count in names.items() if count > 1)
     if isinstance(node, ast.ClassDef):
         decorators = [ast.unparse(decorator) for decorator in node.decorator_list]
         positional = any("dataclass" in text and "kw_only=True" not in text for text in decorators)
-        if positional and len(fields(node, classes)) > MOST_FIELDS:
+        if positional and len(list_fields(node, classes)) > MOST_FIELDS:
             yield f"{node.name} has more than {MOST_FIELDS} fields and is not keyword-only"
     elif isinstance(node, ast.Call) and len(node.args) > MOST_ARGUMENTS:
         callee = ast.unparse(node.func).rpartition(".")[2]
@@ -63,11 +64,11 @@ def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[
                 yield f"{node.name} has more than {MOST_PARAMETERS} parameters and does not document them"
             if len(positional) > MOST_POSITIONAL:
                 yield f"{node.name} takes more than {MOST_POSITIONAL} of its many parameters by position"
-        if returned_values(node) > MOST_VALUES and node.name not in TUPLE_FUNCTIONS:
+        if count_returned_values(node) > MOST_VALUES and node.name not in TUPLE_FUNCTIONS:
             yield f"{node.name} returns a tuple of more than {MOST_VALUES} values"
 
 
-def returned_values(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+def count_returned_values(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
     """Largest number of values of the tuples that a function returns by its annotation or its statements."""
     returns = [entry.value for entry in ast.walk(node) if isinstance(entry, ast.Return)]
     if isinstance(node.returns, ast.Subscript) and ast.unparse(node.returns.value) == "tuple":
@@ -75,7 +76,7 @@ def returned_values(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
     return max((len(entry.elts) for entry in returns if isinstance(entry, ast.Tuple)), default=0)
 
 
-def bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
+def list_bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
     """Names that the assignments of a module or class bind."""
     targets = [
         target
@@ -91,20 +92,22 @@ def bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
     ]
 
 
-def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
+def list_fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     """Names of the fields of a dataclass, inherited ones included."""
-    annotated = [entry for entry in node.body if isinstance(entry, ast.AnnAssign)]
-    names = {ast.unparse(entry.target) for entry in annotated if "ClassVar" not in ast.unparse(entry.annotation)}
+    annotated_entries = [entry for entry in node.body if isinstance(entry, ast.AnnAssign)]
+    names = {
+        ast.unparse(entry.target) for entry in annotated_entries if "ClassVar" not in ast.unparse(entry.annotation)
+    }
     return names.union(
-        *(fields(classes[name], classes) for base in node.bases if (name := ast.unparse(base)) in classes)
+        *(list_fields(classes[name], classes) for base in node.bases if (name := ast.unparse(base)) in classes)
     )
 
 
-def circle_of_imports(modules: dict[str, str], stubs: dict[str, str]) -> list[str]:
+def find_import_circle(modules: dict[str, str], stubs: dict[str, str]) -> list[str]:
     """Modules of a circle of imports, lazy imports and imports for types included; empty without a circle."""
-    texts = {module_name(path): text for path, text in modules.items()}
-    sources = {  # module of each name that a package imports on first use
-        f"{module_name(path)}.{entry.name}": f"{module_name(path)}.{node.module or entry.name}"
+    texts = {format_module_name(path): text for path, text in modules.items()}
+    source_modules = {  # module of each lazily imported name of a package
+        f"{format_module_name(path)}.{entry.name}": f"{format_module_name(path)}.{node.module or entry.name}"
         for path, text in stubs.items()
         for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.ImportFrom)
@@ -117,8 +120,10 @@ def circle_of_imports(modules: dict[str, str], stubs: dict[str, str]) -> list[st
         for node in nodes:
             if isinstance(node, ast.ImportFrom):
                 imports |= {f"{node.module}.{entry.name}": str(node.module) for entry in node.names}
-        targets = {sources.get(name, name if name in texts else package) for name, package in imports.items()}
-        graph[module] = (targets & set(texts)) - {module}
+        imported_modules = {
+            source_modules.get(name, name if name in texts else package) for name, package in imports.items()
+        }
+        graph[module] = (imported_modules & set(texts)) - {module}
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
@@ -126,24 +131,24 @@ def circle_of_imports(modules: dict[str, str], stubs: dict[str, str]) -> list[st
     return []
 
 
-def module_name(path: str) -> str:
+def format_module_name(path: str) -> str:
     """Dotted name of a module from its path within the package."""
     parts = ("contactstudy", *Path(path).with_suffix("").parts)
     return ".".join(part for part in parts if part != "__init__")
 
 
-def misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
+def find_misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
     """Files `room/test_MODULE.py`, `room/test_MODULE_TOPIC.py` or `MODULE/test_TOPIC.py` without such a module."""
     stems = {name.removesuffix(".py") for name in modules}
     rooms = {name.split("/")[0] for name in stems}
-    misplaced = []
+    misplaced_files = []
     for test in tests:
         room, _, name = test.removesuffix(".py").rpartition("/")
         words = name.split("_")[1:]
         candidates = {f"{room}/{'_'.join(words[:count])}" for count in range(1, len(words) + 1)} | {room}
         if room.split("/")[0] in rooms and not candidates & stems:
-            misplaced.append(test)
-    return misplaced
+            misplaced_files.append(test)
+    return misplaced_files
 
 
 def unmarked_constants(text: str) -> list[str]:
@@ -180,7 +185,7 @@ def is_numeric(node: ast.expr, numeric_names: set[str]) -> bool:
 
 
 def test_package_follows_rules() -> None:
-    assert not violations(MODULES)
+    assert not find_violations(MODULES)
 
 
 def test_constants_of_solver_state_their_purpose() -> None:
@@ -206,13 +211,15 @@ def test_constant_without_purpose_is_detected(text: str, names: list[str]) -> No
 
 
 @pytest.mark.parametrize("folder", ["benchmarks", "studies"])
-def test_programs_follow_rules(folder: str) -> None:
-    programs = Path(__file__).parent.parent / folder
-    assert not violations({str(path.relative_to(programs)): path.read_text() for path in programs.rglob("*.py")})
+def test_scripts_follow_rules(folder: str) -> None:
+    folder_path = Path(__file__).parent.parent / folder
+    assert not find_violations(
+        {str(path.relative_to(folder_path)): path.read_text() for path in folder_path.rglob("*.py")}
+    )
 
 
 def test_modules_import_without_circles() -> None:
-    assert not circle_of_imports(MODULES, STUBS)
+    assert not find_import_circle(MODULES, STUBS)
 
 
 @pytest.mark.parametrize(
@@ -228,18 +235,18 @@ def test_circle_of_imports_is_detected(text: str) -> None:
     modules = {"room/__init__.py": "", "room/first.py": "from contactstudy.room.second import edge"}
     stubs = {"room/__init__.pyi": "from .first import size as size"}
     names = {"contactstudy.room.first", "contactstudy.room.second"}
-    assert set(circle_of_imports(modules | {"room/second.py": text}, stubs)) == names
+    assert set(find_import_circle(modules | {"room/second.py": text}, stubs)) == names
 
 
 def test_tests_mirror_modules() -> None:
     folder = Path(__file__).parent
     tests = [path.relative_to(folder).as_posix() for path in folder.rglob("test_*.py")]
-    assert not misplaced_tests(tests, [Path(name).as_posix() for name in MODULES])
+    assert not find_misplaced_tests(tests, [Path(name).as_posix() for name in MODULES])
 
 
 def test_misplaced_test_is_detected() -> None:
     tests = ["film/test_solve.py", "film/test_solve_speeds.py", "export/test_vtk.py", "film/test_speeds.py"]
-    assert misplaced_tests(tests, ["film/solve.py", "export.py"]) == ["film/test_speeds.py"]
+    assert find_misplaced_tests(tests, ["film/solve.py", "export.py"]) == ["film/test_speeds.py"]
 
 
 FIELDS = "\n    ".join(f"{name}: int" for name in "abcde")
@@ -272,4 +279,4 @@ NUMPYDOC = '\n    """Solve.\n\n    Parameters\n    ----------\n    a, b, c, d, e
     ],
 )
 def test_rule_detects_violation(text: str, count: int) -> None:
-    assert len(violations({"module.py": text})) == count
+    assert len(find_violations({"module.py": text})) == count

@@ -1,4 +1,4 @@
-"""Invariants against states computed by hand, against each other, and on Hertz' line contact."""
+"""Stress invariants: states with known values, rotations, bounds, and the line contact of Hertz."""
 
 from __future__ import annotations
 
@@ -24,30 +24,30 @@ from contactstudy.verification import closed_forms as ref
 
 Array = np.ndarray
 
-UPPER = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+COMPONENT_INDICES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
-def state(tensor: Array) -> xr.Dataset:
-    return xr.Dataset({name: float(tensor[index]) for name, index in zip(STRESSES, UPPER, strict=True)})
+def make_state(tensor: Array) -> xr.Dataset:
+    return xr.Dataset({name: float(tensor[index]) for name, index in zip(STRESSES, COMPONENT_INDICES, strict=True)})
 
 
-def uniform(**components: float) -> xr.Dataset:
+def make_uniform_state(**components: float) -> xr.Dataset:
     return xr.Dataset({name: components.get(name, 0.0) for name in STRESSES})
 
 
 @st.composite
-def tensors(draw: st.DrawFn) -> Array:
+def draw_tensor(draw: st.DrawFn) -> Array:
     # The squares of these stresses are finite numbers.
     component = st.floats(-1e9, 1e9).map(lambda value: value if abs(value) > 1e-3 else 0.0)
     values = draw(st.lists(component, min_size=6, max_size=6))
     tensor = np.zeros((3, 3))
-    for value, (i, j) in zip(values, UPPER, strict=True):
+    for value, (i, j) in zip(values, COMPONENT_INDICES, strict=True):
         tensor[i, j] = tensor[j, i] = value
     return tensor
 
 
 @st.composite
-def rotations(draw: st.DrawFn) -> Array:
+def draw_rotation(draw: st.DrawFn) -> Array:
     quaternion = np.array(draw(st.lists(st.floats(-1, 1), min_size=4, max_size=4))) + np.array([1.5, 0, 0, 0])
     w, x, y, z = quaternion / np.linalg.norm(quaternion)
     return np.array(
@@ -62,16 +62,18 @@ def rotations(draw: st.DrawFn) -> Array:
 @pytest.mark.parametrize(
     ("stress", "expected"),
     [
-        (uniform(sigma_xx=3.0), (3.0, 3.0, 1.5, 1.0, [3, 0, 0])),
-        (uniform(sigma_zz=-3.0), (3.0, 3.0, 1.5, -1.0, [0, 0, -3])),
-        (uniform(tau_yz=2.0), (2 * np.sqrt(3), 4.0, 2.0, 0.0, [2, 0, -2])),
-        (uniform(sigma_xx=-1.0, sigma_yy=-1.0, sigma_zz=-1.0), (0.0, 0.0, 0.0, -1.0, [-1, -1, -1])),
+        (make_uniform_state(sigma_xx=3.0), (3.0, 3.0, 1.5, 1.0, [3, 0, 0])),
+        (make_uniform_state(sigma_zz=-3.0), (3.0, 3.0, 1.5, -1.0, [0, 0, -3])),
+        (make_uniform_state(tau_yz=2.0), (2 * np.sqrt(3), 4.0, 2.0, 0.0, [2, 0, -2])),
+        (make_uniform_state(sigma_xx=-1.0, sigma_yy=-1.0, sigma_zz=-1.0), (0.0, 0.0, 0.0, -1.0, [-1, -1, -1])),
         # Mohr's circle of (5, -1, 4) has the centre 2 and the radius 5.
-        (uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0), (np.sqrt(79), 10.0, 5.0, 4 / 3, [7, 0, -3])),
+        (make_uniform_state(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0), (np.sqrt(79), 10.0, 5.0, 4 / 3, [7, 0, -3])),
     ],
     ids=["tension", "compression", "shear", "pressure", "mohr"],
 )
-def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, float, float, list[float]]) -> None:
+def test_invariants_of_simple_states(
+    stress: xr.Dataset, expected: tuple[float, float, float, float, list[float]]
+) -> None:
     mises, equivalent, shear, mean, principal = expected
     assert float(von_mises(stress)) == pytest.approx(mises, abs=1e-12)
     assert float(tresca(stress)) == pytest.approx(equivalent, abs=1e-12)
@@ -81,7 +83,7 @@ def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, f
 
 
 def test_principal_directions_match_mohrs_circle() -> None:
-    result = principal_stresses(uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
+    result = principal_stresses(make_uniform_state(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
     first_direction = result["principal_direction"].sel(principal=1)
     angle = 0.5 * np.arctan2(2 * 4.0, 6.0)
     alignment = abs(
@@ -91,10 +93,10 @@ def test_principal_directions_match_mohrs_circle() -> None:
     assert abs(float(result["principal_direction"].sel(principal=2, axis="z"))) == pytest.approx(1, abs=1e-12)
 
 
-@given(tensor=tensors(), rotation=rotations())
+@given(tensor=draw_tensor(), rotation=draw_rotation())
 def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) -> None:
     scale = np.abs(tensor).max() + 1e-300
-    original_state, rotated_state = state(tensor), state(rotation @ tensor @ rotation.T)
+    original_state, rotated_state = make_state(tensor), make_state(rotation @ tensor @ rotation.T)
     # Von Mises' stress of an almost hydrostatic state is the root of a cancelled difference.
     assert abs(float(von_mises(original_state)) ** 2 - float(von_mises(rotated_state)) ** 2) <= 1e-12 * scale**2
     for invariant in (tresca, maximum_shear, hydrostatic):
@@ -103,9 +105,9 @@ def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) ->
     assert np.abs(values[0] - values[1]).max() <= 1e-12 * scale
 
 
-@given(tensor=tensors())
-def test_tresca_and_von_mises_bound_each_other(tensor: Array) -> None:
-    stress, scale = state(tensor), np.abs(tensor).max() + 1e-300
+@given(tensor=draw_tensor())
+def test_tresca_and_von_mises_stresses_are_within_bounds(tensor: Array) -> None:
+    stress, scale = make_state(tensor), np.abs(tensor).max() + 1e-300
     mises, equivalent = float(von_mises(stress)), float(tresca(stress))
     assert mises <= equivalent + 1e-6 * scale
     assert equivalent <= 2 / np.sqrt(3) * mises + 1e-6 * scale
@@ -118,8 +120,8 @@ def test_tresca_and_von_mises_bound_each_other(tensor: Array) -> None:
 
 
 @pytest.fixture
-def strip() -> Callable[..., xr.Dataset]:
-    def build(friction: float = 0.0, dims: tuple[str, str, str] = ("x", "y", "z")) -> xr.Dataset:
+def make_strip() -> Callable[..., xr.Dataset]:
+    def make_dataset(friction: float = 0.0, dims: tuple[str, str, str] = ("x", "y", "z")) -> xr.Dataset:
         y = np.linspace(-3, 3, 1201)
         z = np.linspace(0.3, 1.0, 71)
         fields = ref.hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
@@ -128,50 +130,52 @@ def strip() -> Callable[..., xr.Dataset]:
             coords={dims[0]: [0.0, 1.0], dims[1]: y, dims[2]: z},
         )
 
-    return build
+    return make_dataset
 
 
 @pytest.mark.parametrize("dims", [("x", "y", "z"), ("x_field", "y_field", "z")])
-def test_orthogonal_shear_of_line_contact(strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]) -> None:
-    cycle = orthogonal_shear_range(strip(dims=dims))
+def test_orthogonal_shear_of_line_contact_equals_closed_form(
+    make_strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]
+) -> None:
+    cycle = orthogonal_shear_range(make_strip(dims=dims))
     assert cycle["orthogonal_shear_range"].dims == (dims[0], "z")
     amplitude = cycle["orthogonal_shear_amplitude"].isel({dims[0]: 0})
     assert float(amplitude.max()) == pytest.approx(0.25, abs=1e-5)
     depth = amplitude.idxmax("z")
     assert float(depth) == pytest.approx(0.5, abs=0.011)
-    column = cycle.isel({dims[0]: 0}).sel(z=depth)
-    assert abs(float(column["y_of_largest_shear"])) == pytest.approx(np.sqrt(0.75), abs=0.006)
-    assert float(column["y_of_largest_shear"]) == pytest.approx(-float(column["y_of_smallest_shear"]), abs=1e-9)
+    line = cycle.isel({dims[0]: 0}).sel(z=depth)
+    assert abs(float(line["y_of_largest_shear"])) == pytest.approx(np.sqrt(0.75), abs=0.006)
+    assert float(line["y_of_largest_shear"]) == pytest.approx(-float(line["y_of_smallest_shear"]), abs=1e-9)
     assert {variable.attrs["units"] for variable in cycle.data_vars.values()} == {"Pa", "m"}
 
 
-def test_orthogonal_shear_range_under_friction(strip: Callable[..., xr.Dataset]) -> None:
-    """At the depth of the largest range the traction shifts both extremes equally."""
-    columns = [
-        float(orthogonal_shear_range(strip(friction))["orthogonal_shear_range"].isel(x=0).max())
+def test_largest_orthogonal_shear_range_is_independent_of_friction(make_strip: Callable[..., xr.Dataset]) -> None:
+    """At the depth of the largest range, friction shifts both extremes equally."""
+    largest_ranges = [
+        float(orthogonal_shear_range(make_strip(friction))["orthogonal_shear_range"].isel(x=0).max())
         for friction in (0, 0.1)
     ]
-    assert columns[1] == pytest.approx(columns[0], rel=5e-3)
+    assert largest_ranges[1] == pytest.approx(largest_ranges[0], rel=5e-3)
 
 
-def test_max_shear_and_von_mises_of_line_contact(strip: Callable[..., xr.Dataset]) -> None:
-    stress = strip()
+def test_max_shear_and_von_mises_of_line_contact_equal_published_values(make_strip: Callable[..., xr.Dataset]) -> None:
+    stress = make_strip()
     assert float(maximum_shear(stress).max()) == pytest.approx(0.300, abs=5e-4)
     assert float(von_mises(stress).max()) == pytest.approx(0.5575, abs=1e-4)
     assert maximum_shear(stress).dims == ("x", "y", "z")
 
 
 @pytest.mark.parametrize("invariant", [von_mises, tresca, maximum_shear, principal_stresses, hydrostatic])
-def test_missing_component_is_named(invariant: Callable[[xr.Dataset], object]) -> None:
+def test_missing_component_raises(invariant: Callable[[xr.Dataset], object]) -> None:
     with pytest.raises(InvalidInputError, match="sigma_yy"):
-        invariant(uniform().drop_vars("sigma_yy"))
+        invariant(make_uniform_state().drop_vars("sigma_yy"))
     with pytest.raises(InvalidInputError, match="Dataset"):
         invariant(np.zeros((3, 3)))
 
 
-def test_units_and_names_stand_on_every_result() -> None:
+def test_invariants_have_units_and_names() -> None:
     for invariant in (von_mises, tresca, maximum_shear, hydrostatic):
-        result = invariant(uniform(sigma_xx=1.0))
+        result = invariant(make_uniform_state(sigma_xx=1.0))
         assert result.name == invariant.__name__
         assert result.attrs["units"] == "Pa"
         assert result.attrs["long_name"]
@@ -186,11 +190,11 @@ def test_units_and_names_stand_on_every_result() -> None:
         (xr.Dataset({"tau_yz": ("y", [1.0, np.nan])}, coords={"y": [0.0, 1.0]}), "finite"),
     ],
 )
-def test_bad_shear_history_is_named(stress: xr.Dataset, message: str) -> None:
+def test_invalid_shear_history_raises(stress: xr.Dataset, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         orthogonal_shear_range(stress)
 
 
 def test_nonfinite_stress_raises() -> None:
     with pytest.raises(InvalidInputError, match="finite"):
-        principal_stresses(uniform(sigma_xx=np.nan))
+        principal_stresses(make_uniform_state(sigma_xx=np.nan))

@@ -10,24 +10,24 @@ from benchmarks.faults import hosts, scenarios, studies
 from benchmarks.faults.table import Row, write_table
 
 
-def rows(kills: int) -> list[Row]:
-    """Try everything."""
-    undisturbed = studies.undisturbed_values()
-    tries = (
-        lambda: scenarios.kills(undisturbed, kills - kills // 4),
-        lambda: scenarios.kills(undisturbed, kills // 4, workers=2),
-        lambda: scenarios.full_disks(undisturbed, max(2, kills // 10)),
-        lambda: scenarios.dead_schedulers(undisturbed, max(1, kills // 33)),
-        lambda: scenarios.damaged_files(undisturbed, max(7, kills * 7 // 20)),
-        lambda: scenarios.damaged_records(undisturbed, max(4, kills // 5)),
-        lambda: scenarios.two_runs(undisturbed, max(2, kills // 12)),
-        lambda: hosts.two_systems(undisturbed, max(4, kills // 12)),
-        lambda: scenarios.at_once(undisturbed, max(2, kills // 12)),
-        lambda: scenarios.clock_steps(undisturbed, max(2, kills // 12)),
-        lambda: scenarios.edited_study(undisturbed, max(2, kills // 20)),
+def run_trials(kills: int) -> list[Row]:
+    """Table of the trials of every fault."""
+    undisturbed_dataset = studies.compute_undisturbed_values()
+    trials = (
+        lambda: scenarios.kill_runs(undisturbed_dataset, kills - kills // 4),
+        lambda: scenarios.kill_runs(undisturbed_dataset, kills // 4, workers=2),
+        lambda: scenarios.fill_disks(undisturbed_dataset, max(2, kills // 10)),
+        lambda: scenarios.kill_schedulers(undisturbed_dataset, max(1, kills // 33)),
+        lambda: scenarios.damage_batches(undisturbed_dataset, max(7, kills * 7 // 20)),
+        lambda: scenarios.damage_records(undisturbed_dataset, max(4, kills // 5)),
+        lambda: scenarios.start_second_runs(undisturbed_dataset, max(2, kills // 12)),
+        lambda: hosts.run_on_two_hosts(undisturbed_dataset, max(4, kills // 12)),
+        lambda: scenarios.run_simultaneously(undisturbed_dataset, max(2, kills // 12)),
+        lambda: scenarios.shift_clock(undisturbed_dataset, max(2, kills // 12)),
+        lambda: scenarios.edit_study_file(undisturbed_dataset, max(2, kills // 20)),
     )
     results = []
-    for trial in tries:
+    for trial in trials:
         start_time = time.monotonic()
         results.append(trial())
         print(results[-1], f"{time.monotonic() - start_time:.0f} s", flush=True)
@@ -35,12 +35,17 @@ def rows(kills: int) -> list[Row]:
 
 
 def main() -> int:
-    """Try everything, and write the page of the option."""
+    """Run the trials and write their table into the page of `--page`."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.faults", description=__doc__)
     parser.add_argument("--page", type=Path, help="page whose table is written")
-    parser.add_argument("--kills", type=int, default=100, help="kills in all; the other numbers go with it")
+    parser.add_argument(
+        "--kills",
+        type=int,
+        default=100,
+        help="total number of kills; the numbers of the other trials are in proportion",
+    )
     options = parser.parse_args()
-    results = rows(options.kills)
+    results = run_trials(options.kills)
     if options.page:
         write_table(options.page, results)
     return int(any(row.passed < row.trials for row in results))

@@ -19,11 +19,11 @@ import xarray as xr
 
 from contactstudy.study import Study, open_study
 from contactstudy.study.folder import Folder
-from tests.small_study import BASE, as_toml
+from tests.small_study import BASE, format_toml
 from tests.study.conftest import ROOT
 
-CREEPAGES, LATERAL = 25, 5
-"""Longitudinal creepages, lateral creepages for each; frictions complete the number of cases."""
+LONGITUDINAL_CREEPAGES, LATERAL_CREEPAGES = 25, 5
+"""Numbers of creepages; the number of frictions completes the number of cases."""
 
 SECONDS = 3600.0
 """Longest wait for a run."""
@@ -31,8 +31,8 @@ SECONDS = 3600.0
 
 def rolling_study(cases: int) -> Study:
     """Return a study of this many cases of steady rolling on a half-space, without the slow certificate of ends."""
-    creepages = min(cases, CREEPAGES)
-    lateral = min(LATERAL, cases // creepages)
+    creepages = min(cases, LONGITUDINAL_CREEPAGES)
+    lateral = min(LATERAL_CREEPAGES, cases // creepages)
     frictions = cases // (creepages * lateral)
     return Study(
         name="rolling",
@@ -47,7 +47,7 @@ def rolling_study(cases: int) -> Study:
     )
 
 
-def begin(folder: Path, workers: int) -> subprocess.Popen[str]:
+def start_process(folder: Path, workers: int) -> subprocess.Popen[str]:
     """Start or resume the study in a folder, in a new group of processes."""
     command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure"]
     return subprocess.Popen(
@@ -60,36 +60,36 @@ def begin(folder: Path, workers: int) -> subprocess.Popen[str]:
     )
 
 
-def done(folder: Path) -> int:
+def count_finished(folder: Path) -> int:
     """Number of cases that are done."""
     return len(Folder(folder / "out").results().cases)
 
 
-def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:
+def run_study(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:
     """Values of a study without the times; the run is killed after `kill_at` cases, and resumed."""
     folder.mkdir()
-    (folder / "study.toml").write_text(as_toml(study))
+    (folder / "study.toml").write_text(format_toml(study))
     if kill_at is not None:
-        process = begin(folder, workers)
-        end = time.monotonic() + SECONDS
-        while done(folder) < kill_at and process.poll() is None and time.monotonic() < end:
+        process = start_process(folder, workers)
+        deadline = time.monotonic() + SECONDS
+        while count_finished(folder) < kill_at and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.02)
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
-        assert kill_at <= done(folder) < study.size, "the run ended before it was killed"
-    process = begin(folder, workers)
+        assert kill_at <= count_finished(folder) < study.size, "the run ended before it was killed"
+    process = start_process(folder, workers)
     _, errors = process.communicate(timeout=SECONDS)
     assert process.returncode == 0, errors
     return open_study(folder / "out").drop_vars("seconds").load()
 
 
-def different(values: xr.Dataset, other_values: xr.Dataset) -> list[str]:
+def list_differing_variables(dataset: xr.Dataset, other_dataset: xr.Dataset) -> list[str]:
     """Variables in which two studies differ in any bit."""
-    names = {*values.variables, *other_values.variables}
+    names = {*dataset.variables, *other_dataset.variables}
     return sorted(
         str(name)
         for name in names
-        if name not in values or name not in other_values or not values[name].identical(other_values[name])
+        if name not in dataset or name not in other_dataset or not dataset[name].identical(other_dataset[name])
     )
 
 
@@ -100,11 +100,11 @@ def main() -> int:
     study = rolling_study(parser.parse_args().cases)
     differences: list[str] = []
     with tempfile.TemporaryDirectory(prefix="rolling-") as name:
-        undisturbed = run(study, Path(name) / "undisturbed", 0)
-        print(f"{study.size} cases, {int(undisturbed['converged'].sum())} converged", flush=True)
+        undisturbed_dataset = run_study(study, Path(name) / "undisturbed", 0)
+        print(f"{study.size} cases, {int(undisturbed_dataset['converged'].sum())} converged", flush=True)
         for workers in (0, 2, 3):
-            result = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
-            differing_names = different(undisturbed, result)
+            resumed_study = run_study(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
+            differing_names = list_differing_variables(undisturbed_dataset, resumed_study)
             differences += differing_names
             print(
                 f"killed in the middle and resumed, workers = {workers}: {differing_names or 'all bits equal'}",

@@ -1,4 +1,4 @@
-"""Studies of tiny cases with the stand-in solver, in processes that can be killed, and the same without faults."""
+"""Studies of the stand-in solver in processes for the faults, and the values of an undisturbed study."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from contactstudy.study import open_study, run_study, worker
 from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import HELD, solve_fake
 from tests.study.conftest import ROOT
 
@@ -31,22 +31,22 @@ SECONDS = 300.0
 
 
 @contextmanager
-def study_folder() -> Iterator[Path]:
+def make_study_folder() -> Iterator[Path]:
     """Folder with the study as a file."""
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
         folder = Path(name)
-        (folder / "study.toml").write_text(as_toml(STUDY))
+        (folder / "study.toml").write_text(format_toml(STUDY))
         yield folder
 
 
-def start(folder: Path, *more: str, largest_file: int | None = None) -> subprocess.Popen[str]:
+def start(folder: Path, *options: str, largest_file: int | None = None) -> subprocess.Popen[str]:
     """Start the study, in a new group of processes; files may have at most `largest_file` bytes."""
 
-    def limited() -> None:
+    def limit_file_size() -> None:
         assert largest_file is not None
         resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
 
-    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", *more]
+    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", *options]
     return subprocess.Popen(
         [sys.executable, "-m", "tests.study.fake_run", *command],
         cwd=ROOT,
@@ -55,12 +55,12 @@ def start(folder: Path, *more: str, largest_file: int | None = None) -> subproce
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        preexec_fn=limited if largest_file is not None else None,
+        preexec_fn=limit_file_size if largest_file is not None else None,
     )
 
 
 class Forked:
-    """Run of the study in a fork of this process, which needs no time to import: killed like any process."""
+    """Run of the study in a fork of this process, which has imported the package already."""
 
     returncode: int | None = None
 
@@ -69,9 +69,9 @@ class Forked:
         if self.pid:
             return
         os.setsid()
-        null = os.open(os.devnull, os.O_RDWR)
-        os.dup2(null, 1)
-        os.dup2(null, 2)
+        null_device = os.open(os.devnull, os.O_RDWR)
+        os.dup2(null_device, 1)
+        os.dup2(null_device, 2)
         worker.RUN = RunSettings(save_seconds=0.0)  # type: ignore[attr-defined] # an import of the module
         command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", "--workers", "0"]
         os._exit(main(command, solver=solve_fake))
@@ -94,17 +94,17 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def count_finished(folder: Path) -> dict[str, int]:
+def list_finished_cases(folder: Path) -> dict[str, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
     return Folder(folder / "out").results().cases["run"].to_dict()
 
 
-def unreadable(folder: Path) -> int:
-    """Number of batches that are damaged."""
+def count_damaged_batches(folder: Path) -> int:
+    """Number of damaged batches."""
     return sum(bool(find_damage(path)) for path in batches(folder))
 
 
-def resume(folder: Path) -> dict[str, int]:
+def resume_study(folder: Path) -> dict[str, int]:
     """Run the study to its end, in this process; counts by state."""
     return dict(run_study(STUDY, folder / "out", workers=0, solver=solve_fake).counts)
 
@@ -115,24 +115,24 @@ def read_values(folder: Path) -> xr.Dataset:
 
 
 def list_leftovers(folder: Path) -> list[Path | str]:
-    """Parts of files and held locks, which a run must not leave behind."""
+    """Partial files and held locks, absent after a run."""
     out = folder / "out"
     return [*out.glob("**/*.part"), *Folder(out).holders]
 
 
-def undisturbed_values() -> xr.Dataset:
+def compute_undisturbed_values() -> xr.Dataset:
     """Return the opened study of a run without faults."""
-    with study_folder() as folder:
-        assert resume(folder) == {"ok": CASES}
+    with make_study_folder() as folder:
+        assert resume_study(folder) == {"ok": CASES}
         return read_values(folder)
 
 
 def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object]) -> None:
     """Wait for a condition, or for the successful end of the process."""
-    end = time.monotonic() + SECONDS
+    deadline = time.monotonic() + SECONDS
     while not condition():
         if process.poll() is not None:
             assert process.returncode == 0, process.communicate()
             return
-        assert time.monotonic() < end, "waited too long"
-        time.sleep(0.02)  # a shorter interval takes the core that the awaited process needs
+        assert time.monotonic() < deadline, "waited too long"
+        time.sleep(0.02)  # shorter intervals would slow the other process on a single core

@@ -1,4 +1,4 @@
-"""One row for each kind of fault, and the page that holds them."""
+"""Table of the kinds of fault, and its place in a page."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Row:
     ----------
     fault : str
         Fault of the study.
-    tried, passed : int
-        How often, and how often everything that was looked at was right.
-    found : str
+    trials, passed : int
+        Number of trials, and of trials with all checked properties.
+    result : str
         Checked properties, with figures.
     """
 
@@ -35,7 +35,7 @@ class Row:
 
 
 def write_table(page: Path, rows: list[Row]) -> None:
-    """Put the table in its place on a page."""
+    """Replace the table between its marks on a page."""
     before, _, remaining_text = page.read_text(encoding="utf-8").partition(BEGIN)
     _, _, after = remaining_text.partition(END)
     table = "\n".join([BEGIN, "", HEAD, *map(str, rows), "", END])

@@ -10,6 +10,5 @@
 * `reference_files`, `stress_file`, `contact_file`, `passes_file`, `film_file`, `generate`: the files in `data`, with
   the estimates of their errors.
 
-The load cases are in `contactstudy.verification.problems`, the loading of the files in
-`contactstudy.verification.problems`.
+`contactstudy.verification.problems` contains the load cases and reads the files.
 """

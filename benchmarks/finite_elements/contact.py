@@ -33,7 +33,7 @@ MAX_STEP = 0.3
 """Largest distance between nodes."""
 
 
-def graded_nodes(start: float, stop: float) -> Array:
+def make_graded_nodes(start: float, stop: float) -> Array:
     """Nodes from `start` to `stop`, graded to both."""
     end_steps = np.array(STEPS)
     end_steps = end_steps[end_steps < 0.4 * (stop - start)]
@@ -42,15 +42,15 @@ def graded_nodes(start: float, stop: float) -> Array:
     return np.concatenate([[start], start + end_steps[:-1], inner, stop - end_steps[-2::-1], [stop]])
 
 
-def hat_pairs(nodes: Array) -> list[Callable[[Array], Array]]:
-    """Hats on the first half of the nodes, each with its mirror image about the middle."""
+def make_mirrored_hats(nodes: Array) -> list[Callable[[Array], Array]]:
+    """Hats on the first half of the nodes, each with its mirror image about mid-length."""
 
-    def pair(index: int) -> Callable[[Array], Array]:
+    def mirrored_hat(index: int) -> Callable[[Array], Array]:
         heights = np.zeros(nodes.size)
         heights[[index, nodes.size - 1 - index]] = 1.0
         return lambda x: np.interp(x, nodes, heights, left=0.0, right=0.0)
 
-    return [pair(index) for index in range((nodes.size + 1) // 2)]
+    return [mirrored_hat(index) for index in range((nodes.size + 1) // 2)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,48 +64,48 @@ class Flexibility:
     resolution: Resolution
 
 
-def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
+def compute_flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
     """Solve for every wavenumber; the body is cut where the load of the panel's smallest one has decayed."""
-    nodes = graded_nodes(case.start, case.stop)
-    margin = graded_nodes(0.0, case.start)[:-1] if case.start > 0 else np.zeros(0)
+    nodes = make_graded_nodes(case.start, case.stop)
+    margin = make_graded_nodes(0.0, case.start)[:-1] if case.start > 0 else np.zeros(0)
     edges = np.concatenate([margin, nodes, (case.length - margin)[::-1]])
     x = Line(edges=edges, order=resolution.order)
-    pairs = hat_pairs(nodes)
-    loads = np.array([x.load(hat) for hat in pairs])
-    depth = resolution.mesh_z()
-    node = legendre.leggauss(resolution.nodes)[0]
-    ks, values = [], []
+    hats = make_mirrored_hats(nodes)
+    loads = np.array([x.load(hat) for hat in hats])
+    depth = resolution.make_mesh_z()
+    gauss_nodes = legendre.leggauss(resolution.nodes)[0]
+    wavenumbers, matrices = [], []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
-        deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), case.poisson)
-        for k in low + 0.5 * (high - low) * (node + 1):
-            amplitudes = body.solve(float(k), [(hat, "z") for hat in pairs])
+        depth_count = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
+        body = HarmonicBody(x, Line(edges=depth[:depth_count], order=resolution.order), case.poisson)
+        for k in low + 0.5 * (high - low) * (gauss_nodes + 1):
+            amplitudes = body.solve(float(k), [(hat, "z") for hat in hats])
             top = 2 * np.stack([u[2] @ body.top for u in amplitudes])
-            flexible = loads @ top.T
-            ks.append(float(k))
-            values.append(0.5 * (flexible + flexible.T))
+            flexibility_of_k = loads @ top.T
+            wavenumbers.append(float(k))
+            matrices.append(0.5 * (flexibility_of_k + flexibility_of_k.T))
     return Flexibility(
-        k=np.array(ks),
-        values=np.array(values),
+        k=np.array(wavenumbers),
+        values=np.array(matrices),
         weights=_moments(np.ones_like, nodes),
         nodes=nodes,
         resolution=resolution,
     )
 
 
-def between_strips(flexible: Flexibility, step: float, count: int) -> Array:
-    """Flexibility `[offset, i, j]` between hats `offset * step` apart along y, but for a constant times `w_i w_j`.
+def integrate_wavenumbers(flexibility: Flexibility, step: float, count: int) -> Array:
+    """Flexibility `[offset, i, j]` between hats `offset * step` apart along y, up to a constant times `w_i w_j`.
 
-    The flexibility grows like `w_i w_j / k` at small wavenumbers: this term, from one pair of hats, is
-    integrated with `cos(k y) - 1`, which only changes the approach.
+    The flexibility grows like `w_i w_j / k` at small wavenumbers: this term, taken from one pair of hats, is
+    integrated with `cos(k y) - 1`, which changes the approach only.
     """
-    resolution, weights = flexible.resolution, flexible.weights
+    resolution, weights = flexibility.resolution, flexibility.weights
     n = resolution.nodes
     inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     offsets = step * np.arange(count)
-    density = flexible.values / np.multiply.outer(weights, weights)
+    density = flexibility.values / np.multiply.outer(weights, weights)
     base = density[:, -1, -1]
-    total = np.zeros((count, *density.shape[1:]))
+    pressure_sum = np.zeros((count, *density.shape[1:]))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
         nodes = slice(i * n, (i + 1) * n)
         node, weight = legendre.leggauss(24 + int(2 * (high - low)))
@@ -114,9 +114,9 @@ def between_strips(flexible: Flexibility, step: float, count: int) -> Array:
         factor = 0.5 * (high - low) * weight * hat**2 / np.pi
         interpolate = legendre.legvander(node, n - 1) @ inverse_legendre
         waves = np.cos(np.outer(offsets, k))
-        total += np.tensordot(waves * factor @ interpolate, density[nodes] - base[nodes, None, None], axes=1)
-        total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[nodes] * base[nodes]))[:, None, None]
-    return total * np.multiply.outer(weights, weights)
+        pressure_sum += np.tensordot(waves * factor @ interpolate, density[nodes] - base[nodes, None, None], axes=1)
+        pressure_sum += ((waves - 1) / k * factor @ interpolate @ (flexibility.k[nodes] * base[nodes]))[:, None, None]
+    return pressure_sum * np.multiply.outer(weights, weights)
 
 
 @dataclass(frozen=True)
@@ -128,33 +128,33 @@ class SolvedContact:
     pressure: Array
 
 
-def solve(case: ContactCase, flexible: Flexibility, step: float, window: float, *, stride: int = 1) -> SolvedContact:
-    """Contact with hats `step` apart along y up to `window`; `every` second node along x if 2."""
+def solve(case: ContactCase, flexibility: Flexibility, step: float, window: float, *, stride: int = 1) -> SolvedContact:
+    """Contact with hats `step` apart along y up to `window`; `stride` 2 omits every other node along x."""
     y = step * np.arange(round(window / step) + 1)
-    strips = between_strips(flexible, step, 2 * y.size - 1)
-    merge = _coarsen(flexible.nodes, stride)
+    strips = integrate_wavenumbers(flexibility, step, 2 * y.size - 1)
+    merge = _compute_coarse_hats(flexibility.nodes, stride)
     row = np.arange(y.size)
     multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat away from the middle includes its mirror image
-    # Unknowns are pairs in y as well: rows of a pair add up.
-    difference, total = np.abs(row[:, None] - row), row[:, None] + row
-    folded = strips[difference] + strips[total]
-    folded *= (0.5 * np.multiply.outer(multiplicity, multiplicity))[..., None, None]
-    matrix = np.einsum("ai,mnij,bj->manb", merge, folded, merge, optimize=True)
+    # The unknown of a row is also that of its mirror image at -y: the flexibilities of both rows add up.
+    row_difference, row_sum = np.abs(row[:, None] - row), row[:, None] + row
+    folded_strips = strips[row_difference] + strips[row_sum]
+    folded_strips *= (0.5 * np.multiply.outer(multiplicity, multiplicity))[..., None, None]
+    matrix = np.einsum("ai,mnij,bj->manb", merge, folded_strips, merge, optimize=True)
     size = matrix.shape[0] * matrix.shape[1]
     matrix = matrix.reshape(size, size) / (1 - case.poisson)  # 2 G = E* (1 - nu), and E* is 1
     matrix = 0.5 * (matrix + matrix.T)
-    weights = np.outer(multiplicity * step, merge @ flexible.weights).ravel()
-    gaps = np.outer(multiplicity * step, merge @ _moments(case.gap_x, flexible.nodes))
+    weights = np.outer(multiplicity * step, merge @ flexibility.weights).ravel()
+    gaps = np.outer(multiplicity * step, merge @ _moments(case.gap_x, flexibility.nodes))
     # Integral of y**2 times a hat: step (y**2 + step**2 / 6).
-    gaps += np.outer(multiplicity * step * (y**2 + step**2 / 6), merge @ flexible.weights)
+    gaps += np.outer(multiplicity * step * (y**2 + step**2 / 6), merge @ flexibility.weights)
     pressure = complementarity(matrix, gaps.ravel(), weights, case.load)
     half_pressure = merge.T @ pressure.reshape(y.size, -1).T
-    pressure_both_sides = np.concatenate([half_pressure, half_pressure[: flexible.nodes.size // 2][::-1]])
-    return SolvedContact(flexible.nodes, y, pressure_both_sides)
+    pressure_both_sides = np.concatenate([half_pressure, half_pressure[: flexibility.nodes.size // 2][::-1]])
+    return SolvedContact(flexibility.nodes, y, pressure_both_sides)
 
 
-def _coarsen(nodes: Array, stride: int) -> Array:
-    """Hat pairs on every so many nodes, as sums of hat pairs on all: array (coarse, fine)."""
+def _compute_coarse_hats(nodes: Array, stride: int) -> Array:
+    """Hats on every `stride`-th node as sums of the hats on all nodes: array (coarse, fine)."""
     half_nodes = nodes[: (nodes.size + 1) // 2]
     coarse_nodes = np.unique(np.append(np.arange(0, half_nodes.size, stride), half_nodes.size - 1))
     return np.array([np.interp(half_nodes, half_nodes[coarse_nodes], row) for row in np.eye(coarse_nodes.size)])
@@ -166,7 +166,7 @@ def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
     widths = np.diff(nodes)
     x = nodes[:-1, None] + 0.5 * widths[:, None] * (node + 1)
     values = 0.5 * widths[:, None] * weight * function(x)
-    return np.array([float((values * hat(x)).sum()) for hat in hat_pairs(nodes)])
+    return np.array([float((values * hat(x)).sum()) for hat in make_mirrored_hats(nodes)])
 
 
 def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:
@@ -174,10 +174,10 @@ def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> A
     # A constant between all hats only shifts the approach; a large constant makes the matrix positive definite.
     constant = 10 * np.abs(matrix).sum() / weights.sum() ** 2
     factor = linalg.cholesky(matrix + constant * np.multiply.outer(weights, weights))
-    of_gap, of_weights = (linalg.solve_triangular(factor, v, trans="T") for v in (gap, weights))
+    scaled_gap, scaled_weights = (linalg.solve_triangular(factor, vector, trans="T") for vector in (gap, weights))
 
     def pressure(approach: float) -> Array:
-        return np.asarray(optimize.nnls(factor, approach * of_weights - of_gap, maxiter=50 * gap.size)[0])
+        return np.asarray(optimize.nnls(factor, approach * scaled_weights - scaled_gap, maxiter=50 * gap.size)[0])
 
     # With the constant c the approach is near c times the load.
     mid_approach = constant * load

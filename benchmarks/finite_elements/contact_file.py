@@ -1,8 +1,9 @@
-"""The file of contacts: every case, and how much each approximation changes it.
+"""The file of contacts: every case with an estimate of its error.
 
-The finite elements are made worse in one way at a time (element order, mesh, depth of the body, quadrature in k), and
-the pressure is found on hats of twice the width along y and along x. Hats err like the square of their width, so a
-third of each change is the error of the finer mesh; the sum is the estimate.
+Variants of the finite elements are coarser in one approximation each (element order, mesh, depth of the body,
+quadrature in k); two further variants have hats of twice the width along y and along x. The error of hats is
+proportional to the square of their width, so a third of their change is the error of the finer mesh. The estimate is
+the sum of the changes.
 """
 
 from __future__ import annotations
@@ -14,18 +15,18 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from benchmarks.finite_elements.contact import SolvedContact, flexibility, solve
+from benchmarks.finite_elements.contact import SolvedContact, compute_flexibility, solve
 from benchmarks.finite_elements.reference_files import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.verification.problems import CONTACT_CASES, ContactCase
 
 PRODUCTION = Resolution(order=4, growth=1.8, smallest=0.02, nodes=5)
-LOWER = replace(PRODUCTION, order=3)
+LOWER_ORDER = replace(PRODUCTION, order=3)
 VARIANTS = {  # name: (variant, reference)
-    "order": (LOWER, PRODUCTION),
-    "mesh": (replace(LOWER, growth=2.4, smallest=0.04), LOWER),
-    "depth": (replace(LOWER, depth=7e3), LOWER),
-    "wavenumbers": (replace(LOWER, nodes=4), LOWER),
+    "order": (LOWER_ORDER, PRODUCTION),
+    "mesh": (replace(LOWER_ORDER, growth=2.4, smallest=0.04), LOWER_ORDER),
+    "depth": (replace(LOWER_ORDER, depth=7e3), LOWER_ORDER),
+    "wavenumbers": (replace(LOWER_ORDER, nodes=4), LOWER_ORDER),
 }
 STEP, WINDOW = 1 / 16, 1.75
 
@@ -33,40 +34,47 @@ STEP, WINDOW = 1 / 16, 1.75
 def solve_reference(case: ContactCase) -> xr.Dataset:
     """The contact with its error estimate."""
     flexibilities = {
-        r: flexibility(case, r) for r in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())])
+        resolution: compute_flexibility(case, resolution)
+        for resolution in dict.fromkeys(
+            [PRODUCTION, LOWER_ORDER, *(changed_resolution for changed_resolution, _ in VARIANTS.values())]
+        )
     }
-    best = solve(case, flexibilities[PRODUCTION], STEP, WINDOW)
+    production = solve(case, flexibilities[PRODUCTION], STEP, WINDOW)
 
-    def on_nodes(solution: SolvedContact) -> np.ndarray:
-        axial = np.array([np.interp(best.x, solution.x, row) for row in solution.pressure.T])
-        return np.array([np.interp(best.y, solution.y, row) for row in axial.T])
+    def evaluate_on_nodes(solution: SolvedContact) -> np.ndarray:
+        resampled_rows = np.array([np.interp(production.x, solution.x, row) for row in solution.pressure.T])
+        return np.array([np.interp(production.y, solution.y, row) for row in resampled_rows.T])
 
-    def line_load(pressure: np.ndarray) -> np.ndarray:
-        return np.asarray(2 * np.trapezoid(pressure, best.y, axis=1))
+    def compute_line_load(pressure: np.ndarray) -> np.ndarray:
+        return np.asarray(2 * np.trapezoid(pressure, production.y, axis=1))
 
     changes = {
-        name: on_nodes(solve(case, flexibilities[worse], STEP, WINDOW))
-        - on_nodes(solve(case, flexibilities[better], STEP, WINDOW))
-        for name, (worse, better) in VARIANTS.items()
+        name: evaluate_on_nodes(solve(case, flexibilities[changed_resolution], STEP, WINDOW))
+        - evaluate_on_nodes(solve(case, flexibilities[reference_resolution], STEP, WINDOW))
+        for name, (changed_resolution, reference_resolution) in VARIANTS.items()
     }
-    changes["hats_y"] = (on_nodes(solve(case, flexibilities[PRODUCTION], 2 * STEP, WINDOW)) - best.pressure) / 3
-    changes["hats_x"] = (on_nodes(solve(case, flexibilities[PRODUCTION], STEP, WINDOW, stride=2)) - best.pressure) / 3
+    changes["hats_y"] = (
+        evaluate_on_nodes(solve(case, flexibilities[PRODUCTION], 2 * STEP, WINDOW)) - production.pressure
+    ) / 3
+    changes["hats_x"] = (
+        evaluate_on_nodes(solve(case, flexibilities[PRODUCTION], STEP, WINDOW, stride=2)) - production.pressure
+    ) / 3
     fields = {
-        "pressure": best.pressure,
+        "pressure": production.pressure,
         "pressure_error": sum(np.abs(change) for change in changes.values()),
     }
     loads = {
-        "line_load": line_load(best.pressure),
-        "line_load_error": sum(np.abs(line_load(change)) for change in changes.values()),
+        "line_load": compute_line_load(production.pressure),
+        "line_load_error": sum(np.abs(compute_line_load(change)) for change in changes.values()),
     }
-    data = xr.Dataset(
+    dataset = xr.Dataset(
         {name: (("x", "y"), values, {"units": "p0"}) for name, values in fields.items()}
         | {name: (("x",), values, {"units": "p0 a"}) for name, values in loads.items()},
-        coords={"x": ("x", best.x, {"units": "a"}), "y": ("y", best.y, {"units": "a"})},
+        coords={"x": ("x", production.x, {"units": "a"}), "y": ("y", production.y, {"units": "a"})},
         attrs={"length": case.length, "distance": case.distance, "crown": case.crown, "poisson": case.poisson},
     )
-    data.attrs |= {f"change_{name}_median": float(np.median(np.abs(change))) for name, change in changes.items()}
-    return data
+    dataset.attrs |= {f"change_{name}_median": float(np.median(np.abs(change))) for name, change in changes.items()}
+    return dataset
 
 
 def write(path: Path) -> None:
@@ -87,5 +95,7 @@ def write(path: Path) -> None:
         start = time.perf_counter()
         solution = solve_reference(case)
         append_case(path, name, solution)
-        worst = float(solution["pressure_error"].sel(y=0).max())
-        print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimate at y = 0: {worst:.1e}", flush=True)
+        max_error = float(solution["pressure_error"].sel(y=0).max())
+        print(
+            f"{name}: {time.perf_counter() - start:.0f} s, largest error estimate at y = 0: {max_error:.1e}", flush=True
+        )

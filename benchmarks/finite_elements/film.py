@@ -34,23 +34,26 @@ START_FILM, CLOSING = 0.3, 0.6
 """Least film of the start, and largest relative decrease of a film in one step."""
 
 
-def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
+def compute_compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
     """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), up to a constant."""
     widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
     midpoints = x_edges[:-1] + 0.5 * widths
     x = Line(edges=np.sort(np.concatenate([x_edges, midpoints])), order=resolution.order)
-    shapes = [(lambda at, low=low, high=high: 1.0 * ((at > low) & (at < high)), "z") for low, high in pairwise(x_edges)]
+    shapes = [
+        (lambda x_point, low=low, high=high: 1.0 * ((x_point > low) & (x_point < high)), "z")
+        for low, high in pairwise(x_edges)
+    ]
     loads = np.array([x.load(shape) for shape, _ in shapes])
-    depth, n = resolution.mesh_z(), resolution.nodes
-    node = legendre.leggauss(n)[0]
-    inverse_legendre = np.linalg.inv(legendre.legvander(node, n - 1))
+    depth, n = resolution.make_mesh_z(), resolution.nodes
+    gauss_nodes = legendre.leggauss(n)[0]
+    inverse_legendre = np.linalg.inv(legendre.legvander(gauss_nodes, n - 1))
     ends = [(y[:, None] - y + 0.5 * side * lengths).ravel() for side in (1, -1)]
     total = np.zeros((y.size**2, widths.size, widths.size))
     for low, high in pairwise(resolution.panels):
-        deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), case.poisson)
-        k = low + 0.5 * (high - low) * (node + 1)
-        # 2 G = E* (1 - nu); means over the displaced column, per length of the loaded one.
+        depth_count = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
+        body = HarmonicBody(x, Line(edges=depth[:depth_count], order=resolution.order), case.poisson)
+        k = low + 0.5 * (high - low) * (gauss_nodes + 1)
+        # 2 G = E* (1 - nu); means over the displaced column, per length of the loaded column.
         tops = [np.stack([u[2] @ body.top for u in body.solve(float(wave), shapes)]) for wave in k]
         response = np.array([2 * loads @ top.T for top in tops]) / ((1 - case.poisson) * np.outer(widths, widths))
         fine_nodes, weight = legendre.leggauss(24 + int(0.7 * np.abs(ends).max() * (high - low)))
@@ -59,10 +62,13 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
             legendre.legvander(fine_nodes, n - 1) @ inverse_legendre * (0.5 * (high - low) * weight / np.pi)[:, None]
         )
         transform = (np.sin(np.outer(ends[0], wave)) - np.sin(np.outer(ends[1], wave))) / wave
-        # The part like 1 / k at small k, equal for all columns, is integrated with cos(k y) - 1: it moves the rest.
-        base = response[:, 0, -1]
-        steady = (transform - (ends[0] - ends[1])[:, None]) / wave @ interpolate @ (k * base)
-        total += np.tensordot(transform @ interpolate, response - base[:, None, None], axes=1) + steady[:, None, None]
+        # The part like 1 / k at small k, equal for all columns, is integrated with cos(k y) - 1, up to a constant.
+        common_response = response[:, 0, -1]
+        steady_part = (transform - (ends[0] - ends[1])[:, None]) / wave @ interpolate @ (k * common_response)
+        total += (
+            np.tensordot(transform @ interpolate, response - common_response[:, None, None], axes=1)
+            + steady_part[:, None, None]
+        )
     total *= widths
     # Beyond the last panel the response falls like 1 / k.
     tail = [np.sin(high * end) / high - end * sici(high * np.maximum(np.abs(end), 1e-12))[1] for end in ends]
@@ -72,7 +78,7 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
 
 @dataclass(frozen=True)
 class Reynolds:
-    """Net outflow of cells, of pressures and films (x, y) that may be complex."""
+    """Net outflow of cells; pressures and films (x, y) may be complex."""
 
     x_edges: Array
     y_edges: Array
@@ -86,10 +92,11 @@ class Reynolds:
         reduced_pressure = np.where(
             pressure.real > 0, -np.expm1(-coefficient * positive_pressure) / coefficient, pressure
         )
-        through = self._couette(film) - self._driven(reduced_pressure, film, self.y_edges)
-        across = -self._driven(reduced_pressure.T, film.T, self.x_edges).T
+        flow_along_y = self._couette(film) - self._driven(reduced_pressure, film, self.y_edges)
+        flow_along_x = -self._driven(reduced_pressure.T, film.T, self.x_edges).T
         return (
-            np.diff(through, axis=1) + np.diff(across, axis=0) * np.diff(self.y_edges) / np.diff(self.x_edges)[:, None]
+            np.diff(flow_along_y, axis=1)
+            + np.diff(flow_along_x, axis=0) * np.diff(self.y_edges) / np.diff(self.x_edges)[:, None]
         )
 
     @cached_property
@@ -100,8 +107,10 @@ class Reynolds:
         weights = []
         for face, edge in enumerate(edges):
             columns = slice(max(face - 2, 0), min(max(face + 1, 2), y.size))
-            ahead = y[columns] - edge
-            weights.append((columns, np.linalg.solve(np.vander(ahead, increasing=True).T, np.eye(ahead.size)[0])))
+            distances = y[columns] - edge
+            weights.append(
+                (columns, np.linalg.solve(np.vander(distances, increasing=True).T, np.eye(distances.size)[0]))
+            )
         return weights
 
     def _couette(self, film: Array) -> Array:
@@ -114,7 +123,7 @@ class Reynolds:
         return np.stack(faces, axis=1)
 
     def _driven(self, reduced_pressure: Array, film: Array, edges: Array) -> Array:
-        """Flow along the last axis that the pressure drives, reversed; ambient pressure on the outermost faces."""
+        """Flow against the last axis under the pressure gradient; the pressure on the outermost faces is ambient."""
         centres = np.concatenate([edges[:1], 0.5 * (edges[1:] + edges[:-1]), edges[-1:]])
         film_before, film_after = np.pad(film, ((0, 0), (1, 0)), "edge"), np.pad(film, ((0, 0), (0, 1)), "edge")
         slope = np.diff(np.pad(reduced_pressure, ((0, 0), (1, 1)))) / np.diff(centres)
@@ -127,18 +136,18 @@ class Reynolds:
         """
         (rows, columns), step = np.indices(film.shape), 1e-30j
         matrices = np.zeros((2, film.size, film.size))
-        for first, second in product(range(3), range(4)):
+        for row_offset, column_offset in product(range(3), range(4)):
             mask = np.zeros(film.shape)
-            mask[first::3, second::4] = 1.0
-            row, column = rows + (first - rows + 1) % 3 - 1, columns + (second - columns + 2) % 4 - 2
-            within = (row >= 0) & (row < film.shape[0]) & (column >= 0) & (column < film.shape[1])
-            cells = np.flatnonzero(within), (row * film.shape[1] + column)[within]
-            matrices[0][cells] = self.outflow(pressure + step * mask, film).imag[within] / 1e-30
-            matrices[1][cells] = self.outflow(pressure, film + step * mask).imag[within] / 1e-30
+            mask[row_offset::3, column_offset::4] = 1.0
+            row, column = rows + (row_offset - rows + 1) % 3 - 1, columns + (column_offset - columns + 2) % 4 - 2
+            is_within = (row >= 0) & (row < film.shape[0]) & (column >= 0) & (column < film.shape[1])
+            cells = np.flatnonzero(is_within), (row * film.shape[1] + column)[is_within]
+            matrices[0][cells] = self.outflow(pressure + step * mask, film).imag[is_within] / 1e-30
+            matrices[1][cells] = self.outflow(pressure, film + step * mask).imag[is_within] / 1e-30
         return matrices[0], matrices[1]
 
 
-def mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
+def compute_mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
     """Gap, mean over columns, at positions along y."""
     position = 2 * x_edges / case.length - 1
     integral = xlogy(1 + position, 1 + position) - xlogy(1 - position, 1 - position) - 2 * position
@@ -147,16 +156,16 @@ def mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
 
 
 def solve(
-    case: LubricatedCase, compliant: Array, x_edges: Array, y_edges: Array, *, tolerance: float = 1e-9
+    case: LubricatedCase, compliance_matrix: Array, x_edges: Array, y_edges: Array, *, tolerance: float = 1e-9
 ) -> tuple[Array, Array]:
     """Pressure and film (x, y), by pseudo-time steps and then the steady state."""
     x, y = (0.5 * (edges[1:] + edges[:-1]) for edges in (x_edges, y_edges))
-    gap, lengths = mean_gap(case, x_edges, y), np.diff(y_edges)
+    gap, lengths = compute_mean_gap(case, x_edges, y), np.diff(y_edges)
     # Load of the line contact of half-width and peak pressure 1 over the whole length
     load = LINE_LOAD * case.length
     areas = np.multiply.outer(np.diff(x_edges), lengths).ravel()
     # Heights are in a**2 / R and p0 = E* a / (2 R).
-    matrix = 0.5 * compliant.reshape(gap.size, gap.size)
+    matrix = 0.5 * compliance_matrix.reshape(gap.size, gap.size)
     pressure = np.sqrt(np.clip(1 - y**2, 0, None)) + 0 * gap
     pressure *= load / (areas @ pressure.ravel())
     film = gap + (matrix @ pressure.ravel()).reshape(gap.shape)
@@ -166,18 +175,20 @@ def solve(
     pressure_viscosity = float(case.lubricant_number * np.sqrt(case.load_number / (2 * np.pi)))
     reynolds = Reynolds(x_edges, y_edges, speed, pressure_viscosity)
     for time in (*TIMES, np.inf):
-        previous_film, inverse = film, lengths / time
+        previous_film, length_per_time = film, lengths / time
         for _ in range(60 if np.isinf(time) else 8):
-            outflow = (reynolds.outflow(pressure, film) + inverse * (film - previous_film)).ravel()
-            by_pressure, by_film = reynolds.derivatives(pressure, film)
-            by_film += np.diag(np.tile(inverse, x.size))
-            jacobian = by_pressure + sparse.csr_array(by_film) @ matrix
+            outflow = (reynolds.outflow(pressure, film) + length_per_time * (film - previous_film)).ravel()
+            pressure_derivative, film_derivative = reynolds.derivatives(pressure, film)
+            film_derivative += np.diag(np.tile(length_per_time, x.size))
+            jacobian = pressure_derivative + sparse.csr_array(film_derivative) @ matrix
             scale = np.abs(jacobian.diagonal())
-            broken = scale * pressure.ravel() < outflow
-            rows = np.where(broken[:, None], np.eye(gap.size), jacobian / scale[:, None])
-            by_height = np.where(broken, 0.0, by_film.sum(axis=1) / scale)
-            right = np.append(np.where(broken, -pressure.ravel(), -outflow / scale), load - areas @ pressure.ravel())
-            change = np.linalg.solve(np.block([[rows, by_height[:, None]], [areas, np.zeros(1)]]), right)
+            is_cavitated = scale * pressure.ravel() < outflow
+            rows = np.where(is_cavitated[:, None], np.eye(gap.size), jacobian / scale[:, None])
+            approach_derivative = np.where(is_cavitated, 0.0, film_derivative.sum(axis=1) / scale)
+            right_side = np.append(
+                np.where(is_cavitated, -pressure.ravel(), -outflow / scale), load - areas @ pressure.ravel()
+            )
+            change = np.linalg.solve(np.block([[rows, approach_derivative[:, None]], [areas, np.zeros(1)]]), right_side)
             film_change = change[-1] + matrix @ change[:-1]
             step_fraction = min(1.0, CLOSING / max((-film_change / film.ravel()).max(), 1e-300))
             pressure = pressure + step_fraction * change[:-1].reshape(gap.shape)

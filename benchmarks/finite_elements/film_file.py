@@ -1,4 +1,4 @@
-"""The file of films: every case on the cells of the package's coarsest level, and the finite elements' own error."""
+"""The file of films: every case on the cells of the package's coarsest level, with the error of the finite elements."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from benchmarks.finite_elements.film import compliance, solve
+from benchmarks.finite_elements.film import compute_compliance, solve
 from benchmarks.finite_elements.reference_files import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.film.levels import create_cells
@@ -17,7 +17,7 @@ from contactstudy.verification.film import coarse_film
 from contactstudy.verification.problems import FILM_CASES
 
 PRODUCTION = Resolution(order=4, growth=1.8, smallest=0.02, nodes=5)
-COARSE = replace(PRODUCTION, order=3, growth=2.4, smallest=0.04, nodes=4)
+COARSE_RESOLUTION = replace(PRODUCTION, order=3, growth=2.4, smallest=0.04, nodes=4)
 
 
 def solve_reference(name: str) -> xr.Dataset:
@@ -25,19 +25,20 @@ def solve_reference(name: str) -> xr.Dataset:
     case, film = FILM_CASES[name], coarse_film(name)
     cells = create_cells(film, film.coarsest_level)[0]
     edges = cells.x_edges, cells.y_edges
-    reference, coarse = (
-        solve(case, compliance(case, *edges, resolution), *edges) for resolution in (PRODUCTION, COARSE)
+    reference_film, coarse_solution = (
+        solve(case, compute_compliance(case, *edges, resolution), *edges)
+        for resolution in (PRODUCTION, COARSE_RESOLUTION)
     )
     return xr.Dataset(
         {
-            "pressure": (("x", "y"), reference[0], {"units": "p0"}),
-            "film": (("x", "y"), reference[1], {"units": "a^2 / R"}),
+            "pressure": (("x", "y"), reference_film[0], {"units": "p0"}),
+            "film": (("x", "y"), reference_film[1], {"units": "a^2 / R"}),
         },
         coords={"x": ("x", cells.x, {"units": "a"}), "y": ("y", cells.y, {"units": "a"})},
         attrs=vars(case)
         | {
-            "pressure_error": float(np.abs(coarse[0] - reference[0]).max()),
-            "film_error": float(np.abs(coarse[1] / reference[1] - 1).max()),
+            "pressure_error": float(np.abs(coarse_solution[0] - reference_film[0]).max()),
+            "film_error": float(np.abs(coarse_solution[1] / reference_film[1] - 1).max()),
         },
     )
 

@@ -16,7 +16,7 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 
 def main() -> None:
     """Write a reference file."""
-    parser = argparse.ArgumentParser(description="Make a file of finite-element references anew.")
+    parser = argparse.ArgumentParser(description="Regenerate a file of finite-element references.")
     parser.add_argument("kind", choices=("stress", "contact", "passes", "film"))
     parser.add_argument("--out", metavar="FOLDER", type=Path, default=DATA, help="default: the project's data")
     options = parser.parse_args()

@@ -1,4 +1,4 @@
-"""The files in `data`: attributes of the whole, then one group for each case."""
+"""The files in `data`: attributes of the file, and one group for each case."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def create_file(path: Path, kind: str, **attributes: str) -> None:
 
 
 def append_case(path: Path, name: str, solution: xr.Dataset) -> None:
-    """Add a case: fields in single precision, coordinates as they are."""
+    """Add a case: fields in single precision, coordinates in double precision."""
     dataset = solution.astype("float32").assign_coords(dict(solution.coords))
     encoding = {key: {"_FillValue": None, "zlib": True, "complevel": 4} for key in dataset.data_vars}
     dataset.to_netcdf(path, mode="a", group=name, encoding=encoding)

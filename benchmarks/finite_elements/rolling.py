@@ -1,9 +1,9 @@
 """Steady rolling of two like bodies between free ends, on the flexibility of the finite elements.
 
 Traction and pressure are uniform on columns along x and on strips along y. For each wavenumber along y the finite
-elements give the mean displacement of each column under each; the integral over the wavenumber makes of it the
-displacement of strips. Bodies and motion are even about mid-length: pressure and the traction along y are even, the
-traction along x is odd, so one half of the columns is unknown.
+elements give the mean displacement of each column under each; its integral over the wavenumber is the displacement of
+strips. Bodies and motion are even about mid-length: pressure and the traction along y are even, the traction along x is
+odd, so the tractions of one half of the columns are unknown.
 
 Rolling begins at rest and advances strip by strip. In every step the material of a strip comes from the strip ahead,
 and the tractions q minimise
@@ -11,9 +11,8 @@ and the tractions q minimise
     q A q - 2 q A q_before    for    |q| <= f p    in every cell and a prescribed sum of the q along y,
 
 with the flexibility A of one body and the tractions one strip ahead and one step earlier: a convex program over cones.
-Its multiplier of the sum is the rigid slip of the step, the creepage. Nothing is shared with the solver, neither the
-body nor the way to the steady state. Slip is taken between neighbouring strips, so the creepage has an error of first
-order in their width.
+Its multiplier of the sum is the rigid slip of the step, the creepage. The program shares no code with the solver. The
+slip is a difference between neighbouring strips, so the error of the creepage is of first order in their width.
 """
 
 from __future__ import annotations
@@ -35,10 +34,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class ColumnFlexibility:
-    """Mean displacement of pairs of columns, in units where `2 G` is 1, per wavenumber: arrays `[k, of, under]`.
+    """Mean displacement of columns with their mirror images, in units where `2 G` is 1: `[k, displaced, loaded]`.
 
-    `x` and `y` are even and odd in the half of the body as the traction along them is; `cross` is the displacement
-    along x under tractions along y, the factor of `sin`.
+    `x` is odd about mid-length, `y` and `z` are even, as their tractions; `cross` is the displacement along x under
+    tractions along y, the factor of `sin`.
     """
 
     edges: Array
@@ -51,29 +50,30 @@ class ColumnFlexibility:
     resolution: Resolution
 
 
-def flexibility(length: float, columns: int, poisson: float, resolution: Resolution) -> ColumnFlexibility:
+def compute_flexibility(length: float, columns: int, poisson: float, resolution: Resolution) -> ColumnFlexibility:
     """Solve for every wavenumber on an even number of columns; the body is cut where a panel's load has decayed."""
     edges = np.linspace(0.0, length, columns + 1)
-    nodes_x = resolution.mesh_x(length)
+    nodes_x = resolution.make_mesh_x(length)
     nodes_x = nodes_x[nodes_x < 0.9 * edges[1]]
     x = Line(edges=np.unique(np.concatenate([edges, nodes_x, length - nodes_x])), order=resolution.order)
     step, half_columns = edges[1], columns // 2
 
-    def column(low: float, mirrored: float) -> Array:
-        """Forces of a pair of columns: 1 on the one, 1 or -1 on its mirror image."""
+    def mirror_columns(start: float, mirror_sign: float) -> Array:
+        """Force 1 on a column, and 1 or -1 on its mirror image."""
         unit_load, mirrored_load = (
-            x.load(lambda x, s=s: 1.0 * (x > s) * (x < s + step)) for s in (low, length - low - step)
+            x.load(lambda x, column_start=column_start: 1.0 * (x > column_start) * (x < column_start + step))
+            for column_start in (start, length - start - step)
         )
-        return unit_load + mirrored * mirrored_load
+        return unit_load + mirror_sign * mirrored_load
 
-    even, odd = (np.array([column(edges[i], sign) for i in range(half_columns)]) for sign in (1.0, -1.0))
-    depth, node = resolution.mesh_z(), legendre.leggauss(resolution.nodes)[0]
+    even, odd = (np.array([mirror_columns(edges[i], sign) for i in range(half_columns)]) for sign in (1.0, -1.0))
+    depth, gauss_nodes = resolution.make_mesh_z(), legendre.leggauss(resolution.nodes)[0]
     flexibilities: dict[str, list[Array]] = {"z": [], "x": [], "y": [], "cross": []}
-    ks = []
+    wavenumbers = []
     for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
-        deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
-        body = HarmonicBody(x, Line(edges=depth[:deep_enough], order=resolution.order), poisson)
-        for k in low + 0.5 * (high - low) * (node + 1):
+        depth_count = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
+        body = HarmonicBody(x, Line(edges=depth[:depth_count], order=resolution.order), poisson)
+        for k in low + 0.5 * (high - low) * (gauss_nodes + 1):
             loads = np.zeros((3, half_columns, 3, x.basis.N, body.z.basis.N))
             for component_load, component, forces, sign in zip(
                 loads, (2, 0, 1), (even, odd, even), (1, 1, -1), strict=True
@@ -81,33 +81,33 @@ def flexibility(length: float, columns: int, poisson: float, resolution: Resolut
                 component_load[:, component] = sign * forces[:, :, None] * body.top
             amplitudes = body.displacements(loads.reshape(-1, *loads.shape[2:]), float(k))
             top = 2 * (amplitudes @ body.top).reshape(3, half_columns, 3, -1)
-            # A pair's mean is that of its first column: the functional of both, halved.
-            mean = 0.5 / step
-            flexibilities["z"].append(mean * even @ top[0, :, 2].T)
-            flexibilities["x"].append(mean * odd @ top[1, :, 0].T)
-            flexibilities["y"].append(-mean * even @ top[2, :, 1].T)
-            flexibilities["cross"].append(mean * odd @ top[2, :, 0].T)
-            ks.append(float(k))
+            # The mean over a column is half the functional of the column and its mirror image.
+            mean_factor = 0.5 / step
+            flexibilities["z"].append(mean_factor * even @ top[0, :, 2].T)
+            flexibilities["x"].append(mean_factor * odd @ top[1, :, 0].T)
+            flexibilities["y"].append(-mean_factor * even @ top[2, :, 1].T)
+            flexibilities["cross"].append(mean_factor * odd @ top[2, :, 0].T)
+            wavenumbers.append(float(k))
     return ColumnFlexibility(
         edges=edges,
         **{name: np.array(flexibility) for name, flexibility in flexibilities.items()},
-        k=np.array(ks),
+        k=np.array(wavenumbers),
         poisson=poisson,
         resolution=resolution,
     )
 
 
-def between_strips(flexible: ColumnFlexibility, name: str, width: float, count: int) -> Array:
-    """Displacement `[offset, of, under]` in the middle of strips, `offset` strips away from the loaded one.
+def integrate_wavenumbers(flexibility: ColumnFlexibility, name: str, width: float, count: int) -> Array:
+    """Displacement `[offset, displaced, loaded]` in the middle of strips, `offset` strips from the loaded strip.
 
-    Under a resultant it grows like a constant over k at small wavenumbers, the same for all columns: that part is
-    integrated with `cos(k y) - 1`, which leaves out a displacement of the whole body.
+    Under a resultant it grows like a constant over k at small wavenumbers, the same for all columns: this part is
+    integrated with `cos(k y) - 1`, which omits a displacement of the whole body.
     """
-    values, odd, resultant = getattr(flexible, name), name == "cross", name in "yz"
-    resolution, n = flexible.resolution, flexible.resolution.nodes
+    values, is_odd, has_resultant = getattr(flexibility, name), name == "cross", name in "yz"
+    resolution, n = flexibility.resolution, flexibility.resolution.nodes
     inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     offsets = width * np.arange(count)
-    base = values[:, -1, -1] if resultant else np.zeros(flexible.k.size)
+    common_response = values[:, -1, -1] if has_resultant else np.zeros(flexibility.k.size)
     total = np.zeros((count, *values.shape[1:]))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
         nodes = slice(i * n, (i + 1) * n)
@@ -115,16 +115,18 @@ def between_strips(flexible: ColumnFlexibility, name: str, width: float, count: 
         k = low + 0.5 * (high - low) * (node + 1)
         factor = 0.5 * (high - low) * weight * width * np.sinc(k * width / (2 * np.pi)) / np.pi
         interpolate = legendre.legvander(node, n - 1) @ inverse_legendre
-        waves = (np.sin if odd else np.cos)(np.outer(offsets, k))
-        total += np.tensordot(waves * factor @ interpolate, values[nodes] - base[nodes, None, None], axes=1)
-        if resultant:
-            total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[nodes] * base[nodes]))[:, None, None]
+        waves = (np.sin if is_odd else np.cos)(np.outer(offsets, k))
+        total += np.tensordot(waves * factor @ interpolate, values[nodes] - common_response[nodes, None, None], axes=1)
+        if has_resultant:
+            total += ((waves - 1) / k * factor @ interpolate @ (flexibility.k[nodes] * common_response[nodes]))[
+                :, None, None
+            ]
     return total
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rolled:
-    """Steady tractions on columns of the first half and strips `[column, strip]`, and how far the last step moved."""
+class RollingSolution:
+    """Steady tractions `[column, strip]` on the first half of the columns, and the largest change in the last step."""
 
     creepage: float
     pressure: Array
@@ -133,8 +135,9 @@ class Rolled:
     change: float
 
 
-def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
-    """Matrix between cells, numbered column first, by offset; odd ones change sign for negative offsets."""
+def _make_blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
+    """Matrix between cells (column-major) from the offsets of strips; an odd matrix changes sign for negative
+    offsets."""
     offset = np.arange(count)[:, None] - np.arange(count)
     blocks = strips[np.abs(offset)]
     if odd:
@@ -143,30 +146,39 @@ def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
     return blocks.transpose(2, 0, 3, 1).reshape(columns * count, columns * count)
 
 
-def roll(
-    flexible: ColumnFlexibility, strips: int, window: float, load: float, friction: float, part: float, steps: int
-) -> Rolled:
+def solve_rolling(
+    flexibility: ColumnFlexibility,
+    strips: int,
+    window: float,
+    load: float,
+    friction: float,
+    force_fraction: float,
+    steps: int,
+) -> RollingSolution:
     """Two like bodies of plane-strain modulus 1 each, the gap y**2 / 2, rolling along +y from rest.
 
-    The force along y is a part of full sliding's.
+    The force along y is `force_fraction` times that of full sliding.
     """
-    half_columns, width = flexible.edges.size // 2, 2 * window / strips
+    half_columns, width = flexibility.edges.size // 2, 2 * window / strips
     # 2 G = (1 - nu) E', of one body.
-    of = {name: between_strips(flexible, name, width, strips) / (1 - flexible.poisson) for name in ("z", "x", "y")}
-    normal = 2 * _blocks(of["z"], strips)
+    flexibilities = {
+        name: integrate_wavenumbers(flexibility, name, width, strips) / (1 - flexibility.poisson)
+        for name in ("z", "x", "y")
+    }
+    normal = 2 * _make_blocks(flexibilities["z"], strips)
     y = (np.arange(strips) + 0.5) * width - window
-    areas = np.full(half_columns * strips, 2 * width * flexible.edges[1])
+    areas = np.full(half_columns * strips, 2 * width * flexibility.edges[1])
     pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half_columns), areas, load)
-    cross = between_strips(flexible, "cross", width, strips) / (1 - flexible.poisson)
-    along_y = _blocks(of["y"], strips)
+    cross_flexibility = integrate_wavenumbers(flexibility, "cross", width, strips) / (1 - flexibility.poisson)
+    matrix_y = _make_blocks(flexibilities["y"], strips)
     # A constant between all tractions along y displaces the whole body and makes the program convex.
-    along_y = along_y - 1.01 * min(float(np.linalg.eigvalsh(along_y + along_y.T)[0]) / 2, 0.0) / areas.size
-    cross_blocks = _blocks(cross, strips, odd=True)
-    matrix = np.block([[_blocks(of["x"], strips), cross_blocks], [cross_blocks.T, along_y]])
+    matrix_y = matrix_y - 1.01 * min(float(np.linalg.eigvalsh(matrix_y + matrix_y.T)[0]) / 2, 0.0) / areas.size
+    cross_blocks = _make_blocks(cross_flexibility, strips, odd=True)
+    matrix = np.block([[_make_blocks(flexibilities["x"], strips), cross_blocks], [cross_blocks.T, matrix_y]])
     matrix = 0.5 * (matrix + matrix.T)
-    loaded = np.flatnonzero(pressure > 0)
-    count, unknown = loaded.size, np.concatenate([loaded, areas.size + loaded])
-    force = part * friction * pressure.sum()
+    loaded_cells = np.flatnonzero(pressure > 0)
+    count, unknown_indices = loaded_cells.size, np.concatenate([loaded_cells, areas.size + loaded_cells])
+    force = force_fraction * friction * pressure.sum()
     # The sum of the q along y, then (f p, q_x, q_y) cell by cell in a cone.
     indices = np.arange(count)
     rows = np.concatenate([np.zeros(count, int), 3 * indices + 2, 3 * indices + 3])
@@ -174,24 +186,24 @@ def roll(
     values = np.concatenate([np.ones(count), -np.ones(2 * count)])
     constraints = sp.csc_matrix((values, (rows, columns)), (1 + 3 * count, 2 * count))
     limits = np.zeros(1 + 3 * count)
-    limits[0], limits[1::3] = force, friction * pressure[loaded]
+    limits[0], limits[1::3] = force, friction * pressure[loaded_cells]
     cones = [clarabel.ZeroConeT(1), *[clarabel.SecondOrderConeT(3)] * count]
-    upper = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown, unknown)]))
+    upper_triangle = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown_indices, unknown_indices)]))
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     traction, change, creepage = np.zeros((2, half_columns, strips)), np.inf, np.nan
     for _ in range(steps):
-        ahead = np.zeros_like(traction)
-        ahead[:, :, :-1] = traction[:, :, 1:]
-        surface_shift = 2 * matrix @ ahead.ravel()
+        traction_ahead = np.zeros_like(traction)
+        traction_ahead[:, :, :-1] = traction[:, :, 1:]
+        surface_shift = 2 * matrix @ traction_ahead.ravel()
         solution = clarabel.DefaultSolver(
-            upper, -surface_shift[unknown], constraints, limits, cones, settings=settings
+            upper_triangle, -surface_shift[unknown_indices], constraints, limits, cones, settings=settings
         ).solve()
         forces = np.zeros(2 * areas.size)
-        forces[unknown] = solution.x
+        forces[unknown_indices] = solution.x
         change = float(np.abs(forces - traction.ravel()).max() / (friction * pressure.max()))
         traction, creepage = forces.reshape(traction.shape), -solution.z[0] / width
-    return Rolled(
+    return RollingSolution(
         creepage=creepage,
         pressure=pressure.reshape(half_columns, -1),
         along_x=traction[0],

@@ -16,10 +16,10 @@ from scipy import sparse
 
 Array = NDArray[np.float64]
 OFFSETS = (0.2, 0.7), (0.25, 0.75)
-"""Points per rectangle, over its sides: every triangle has one at least, none is on a side."""
+"""Points per rectangle, over its sides: each triangle contains one at least, and its sides contain none."""
 
 
-def points(edges: Array, axis: int) -> Array:
+def list_point_positions(edges: Array, axis: int) -> Array:
     """Positions of the points along x (0) or z (1)."""
     offsets = np.array(OFFSETS[axis])
     return (edges[:-1, None] + np.diff(edges)[:, None] * offsets).ravel()
@@ -38,7 +38,7 @@ class Elements:
         self.count = 9 * len(self.triangles)
 
     def equilibrium(self) -> sparse.csr_array:
-        """All equations: in the triangles, across their sides, on the faces."""
+        """Equations of equilibrium in the triangles, across their sides and on the faces."""
         rows: list[dict[int, float]] = []
         sides: dict[tuple[tuple[float, ...], ...], list[tuple[int, Array]]] = defaultdict(list)
         for index, corners in enumerate(self.triangles):
@@ -49,13 +49,13 @@ class Elements:
                     row[9 * index + 3 * corner + row_component] += slopes[0, corner]
                     row[9 * index + 3 * corner + shear_component] += slopes[1, corner]
                 rows.append(row)
-            for first in range(3):
-                second = (first + 1) % 3
-                ends = sorted((tuple(corners[first]), tuple(corners[second])))
+            for corner_index in range(3):
+                next_index = (corner_index + 1) % 3
+                ends = sorted((tuple(corners[corner_index]), tuple(corners[next_index])))
                 tangent = np.subtract(ends[1], ends[0])
                 normal = np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
                 for end in ends:
-                    corner = first if tuple(corners[first]) == end else second
+                    corner = corner_index if tuple(corners[corner_index]) == end else next_index
                     sides[(*ends, end)].append((9 * index + 3 * corner, normal))
         for elements in sides.values():
             for direction in range(2):
@@ -69,56 +69,58 @@ class Elements:
         i, j, values = zip(*entries, strict=True)
         return sparse.csr_array((values, (i, j)), shape=(len(rows), self.count))
 
-    def at_points(self) -> list[sparse.csr_array]:
+    def stress_matrices(self) -> list[sparse.csr_array]:
         """Matrices from the unknowns to the stresses xx, zz, xz at all points (x first)."""
-        x, z = points(self.x, 0), points(self.z, 1)
+        x, z = list_point_positions(self.x, 0), list_point_positions(self.z, 1)
         matrices = [sparse.lil_array((x.size * z.size, self.count)) for _ in range(3)]
-        for i, px in enumerate(x):
-            for j, pz in enumerate(z):
+        for i, point_x in enumerate(x):
+            for j, point_z in enumerate(z):
                 rectangle = (i // 2) * (self.z.size - 1) + j // 2
                 upper = OFFSETS[1][j % 2] > OFFSETS[0][i % 2]
                 element = 2 * rectangle + int(upper)
                 corners = self.triangles[element]
-                weights = np.linalg.solve(np.vstack([np.ones(3), corners.T]), [1.0, px, pz])
+                weights = np.linalg.solve(np.vstack([np.ones(3), corners.T]), [1.0, point_x, point_z])
                 for component in range(3):
                     for corner in range(3):
                         matrices[component][i * z.size + j, 9 * element + 3 * corner + component] = weights[corner]
         return [matrix.tocsr() for matrix in matrices]
 
 
-def min_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
-    """Least k for histories (point, instant, 6) at the points of a mesh with these edges."""
+def minimize_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
+    """Least k for histories (point, instant, 6) at the points of a mesh with edges `x` and `z`."""
     elements = Elements(x, z)
-    equations, (xx, zz, xz) = elements.equilibrium(), elements.at_points()
+    equations, (xx, zz, xz) = elements.equilibrium(), elements.stress_matrices()
     count, instants = history.shape[:2]
-    root = np.sqrt(3.0)
+    root_3 = np.sqrt(3.0)
     sxx, syy, szz, sxy, sxz, syz = np.moveaxis(history, -1, 0)
     blocks = [
         np.zeros((count, instants)),
         syy - 0.5 * (sxx + szz),
-        0.5 * root * (sxx - szz),
-        root * sxz,
-        root * np.sqrt(sxy**2 + syz**2),
+        0.5 * root_3 * (sxx - szz),
+        root_3 * sxz,
+        root_3 * np.sqrt(sxy**2 + syz**2),
     ]
     rows = np.arange(count * instants)
     point = rows // instants
 
-    # Unknowns: von Mises' stress t, the free part of each point along u, the stresses.
-    def cone(row: int, matrix: sparse.sparray) -> sparse.csr_array:
-        spread = sparse.csr_array((np.full(rows.size, -1.0), (5 * rows + row, rows)), shape=(5 * rows.size, rows.size))
-        return spread @ matrix
+    # Unknowns: the bound on von Mises' stress, the free stress along y at each point, the stresses.
+    def make_cone_rows(cone_row: int, matrix: sparse.sparray) -> sparse.csr_array:
+        selection = sparse.csr_array(
+            (np.full(rows.size, -1.0), (5 * rows + cone_row, rows)), shape=(5 * rows.size, rows.size)
+        )
+        return selection @ matrix
 
-    bound = cone(0, sparse.csr_array(np.ones((rows.size, 1))))
-    free_stress = cone(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
-    stress = cone(2, 0.5 * root * (xx - zz)[point]) + cone(3, root * xz[point])
+    bound = make_cone_rows(0, sparse.csr_array(np.ones((rows.size, 1))))
+    free_stress = make_cone_rows(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
+    stress = make_cone_rows(2, 0.5 * root_3 * (xx - zz)[point]) + make_cone_rows(3, root_3 * xz[point])
     constraints = sparse.hstack([sparse.csr_array((equations.shape[0], 1 + count)), equations])
     matrix = sparse.vstack([constraints, sparse.hstack([bound, free_stress, stress])], format="csc")
-    right = np.concatenate([np.zeros(equations.shape[0]), np.stack(blocks, axis=-1).ravel()])
+    right_side = np.concatenate([np.zeros(equations.shape[0]), np.stack(blocks, axis=-1).ravel()])
     cost = np.zeros(1 + count + elements.count)
     cost[0] = 1.0
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     cones = [clarabel.ZeroConeT(equations.shape[0])] + [clarabel.SecondOrderConeT(5)] * rows.size
     zero_matrix = sparse.csc_array((cost.size, cost.size))
-    solution = clarabel.DefaultSolver(zero_matrix, cost, matrix, right, cones, settings=settings).solve()
-    return float(solution.obj_val) / root
+    solution = clarabel.DefaultSolver(zero_matrix, cost, matrix, right_side, cones, settings=settings).solve()
+    return float(solution.obj_val) / root_3

@@ -2,8 +2,7 @@
 
 The response to `cos(k y)` varies smoothly with k, on the scale of 1 over the body's length at the low end and
 of 1 over the depth at the high end. It is computed at Gauss nodes of panels that about double, interpolated
-inside each panel, and integrated against the transform of h, which oscillates, on as many nodes as that
-needs.
+inside each panel, and integrated against the oscillating transform of h on a finer Gauss rule.
 """
 
 from __future__ import annotations
@@ -44,17 +43,17 @@ class Resolution:
     nodes: int = 6
     panels: tuple[float, ...] = PANELS
 
-    def mesh_x(self, length: float) -> Array:
-        """Edges graded to both ends; beyond the grading they are every multiple of 1/2, where loads begin and end."""
+    def make_mesh_x(self, length: float) -> Array:
+        """Edges graded towards both ends; the inner edges are multiples of 1/2, where loads begin and end."""
         step = min(0.5, 0.25 * length)
         half_nodes = [0.0]
         while half_nodes[-1] < 0.25:
             half_nodes.append(max(self.smallest, self.growth * 1.2 * half_nodes[-1]))
-        first = step / half_nodes[-1] * np.array(half_nodes)
+        graded_edges = step / half_nodes[-1] * np.array(half_nodes)
         inner_nodes = np.linspace(step, length - step, round(length / step) - 1)
-        return np.concatenate([first[:-1], inner_nodes, (length - first[::-1])[1:]])
+        return np.concatenate([graded_edges[:-1], inner_nodes, (length - graded_edges[::-1])[1:]])
 
-    def mesh_z(self) -> Array:
+    def make_mesh_z(self) -> Array:
         edges = [0.0, self.smallest]
         while edges[-1] < self.depth:
             edges.append(edges[-1] * self.growth)
@@ -81,22 +80,24 @@ def harmonics(
 ) -> Harmonics:
     """Solve for every wavenumber; a shape is `g` and the direction of the load."""
     body = HarmonicBody(
-        Line(edges=resolution.mesh_x(length), order=resolution.order),
-        Line(edges=resolution.mesh_z(), order=resolution.order),
+        Line(edges=resolution.make_mesh_x(length), order=resolution.order),
+        Line(edges=resolution.make_mesh_z(), order=resolution.order),
         poisson,
     )
     node = legendre.leggauss(resolution.nodes)[0]
     edges = np.array(resolution.panels, dtype=float)
-    ks = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (node + 1)).ravel()
+    wavenumbers = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (node + 1)).ravel()
     stress, surface = [], []
-    for k in ks:
+    for k in wavenumbers:
         u = body.solve(float(k), shapes)
         stress.append(body.stresses(float(k), u, x, z))
         surface.append(body.surface(u, x))
-    return Harmonics(resolution, ks, np.array(stress), np.array(surface))
+    return Harmonics(resolution, wavenumbers, np.array(stress), np.array(surface))
 
 
-def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iterator[tuple[slice, Array, Array, Array]]:
+def _make_panels(
+    resolution: Resolution, transform: Callable[[Array], Array]
+) -> Iterator[tuple[slice, Array, Array, Array]]:
     """For each panel: its slice of the nodes, fine nodes, their weights times `h(k) / pi`, interpolation."""
     n = resolution.nodes
     inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
@@ -107,8 +108,8 @@ def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iter
         yield slice(i * n, (i + 1) * n), fine_nodes, weights, legendre.legvander(node, n - 1) @ inverse_legendre
 
 
-def stresses(
-    harmonic: Harmonics,
+def superpose_stresses(
+    harmonics: Harmonics,
     normal: int,
     tangential: int | None,
     friction: float,
@@ -116,22 +117,22 @@ def stresses(
     transform: Callable[[Array], Array] = transform_quartic,
 ) -> dict[str, Array]:
     """The six components on `(x, y, z)`, from the indices of the normal and of the tangential shape."""
-    ys = np.asarray(y, dtype=float)
-    total = np.zeros((len(COMPONENTS), ys.size, *harmonic.stress.shape[3:]))
+    positions = np.asarray(y, dtype=float)
+    total = np.zeros((len(COMPONENTS), positions.size, *harmonics.stress.shape[3:]))
     sine = np.array([name in ("tau_xy", "tau_yz") for name in COMPONENTS])
-    for panel, k, weight, interpolate in _panels(harmonic.resolution, transform):
-        cos, sin = ((np.cos, np.sin)[i](np.outer(ys, k)) * weight @ interpolate for i in (0, 1))
+    for panel, k, weight, interpolate in _make_panels(harmonics.resolution, transform):
+        cos, sin = ((np.cos, np.sin)[i](np.outer(positions, k)) * weight @ interpolate for i in (0, 1))
         for index, factor, even, odd in ((normal, 1.0, cos, sin), (tangential, friction, sin, -cos)):
             if index is None:
                 continue
-            values = harmonic.stress[panel, index]
+            values = harmonics.stress[panel, index]
             total[~sine] += factor * np.einsum("yk,kcxz->cyxz", even, values[:, ~sine])
             total[sine] += factor * np.einsum("yk,kcxz->cyxz", odd, values[:, sine])
     return {name: field.transpose(1, 0, 2) for name, field in zip(COMPONENTS, total, strict=True)}
 
 
-def displacement(
-    harmonic: Harmonics,
+def superpose_displacement(
+    harmonics: Harmonics,
     case: LoadCase,
     normal: int,
     tangential: int | None,
@@ -141,18 +142,18 @@ def displacement(
 ) -> Array:
     """`E u_z` of the top on `(x, y)` less that at `(x[reference], 0)`: only for loads even about mid-length.
 
-    The response grows like `1/k` at low k, the same all along x: what differs along x, and k times the rest,
-    are smooth.
+    The response grows like `1/k` at low k, the same all along x: the differences along x are smooth in k, and
+    so is k times the response at the reference.
     """
-    ys = np.asarray(y, dtype=float)
-    total = np.zeros((ys.size, harmonic.surface.shape[2]))
-    for panel, k, weight, interpolate in _panels(harmonic.resolution, transform):
-        phases, scaled = np.outer(ys, k), harmonic.k[panel]
-        surface = harmonic.surface[panel, normal]
+    positions = np.asarray(y, dtype=float)
+    total = np.zeros((positions.size, harmonics.surface.shape[2]))
+    for panel, k, weight, interpolate in _make_panels(harmonics.resolution, transform):
+        phases, node_k = np.outer(positions, k), harmonics.k[panel]
+        surface = harmonics.surface[panel, normal]
         base = surface[:, reference]
         total += np.cos(phases) * weight @ interpolate @ (surface - base[:, None])
-        total += ((np.cos(phases) - 1) / k * weight @ interpolate @ (scaled * base))[:, None]
+        total += ((np.cos(phases) - 1) / k * weight @ interpolate @ (node_k * base))[:, None]
         if tangential is not None:
-            drag = harmonic.surface[panel, tangential] * scaled[:, None]
-            total += case.friction * (np.sin(phases) / k * weight @ interpolate @ drag)
+            scaled_response = harmonics.surface[panel, tangential] * node_k[:, None]
+            total += case.friction * (np.sin(phases) / k * weight @ interpolate @ scaled_response)
     return (1 + case.poisson) * total.T

@@ -1,1 +1,1 @@
-"""Random cases: their parameters, their properties, and long runs by command."""
+"""Random cases: their parameters, their properties, and a command for long runs."""

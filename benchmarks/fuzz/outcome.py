@@ -40,34 +40,34 @@ MAX_SECONDS = 120.0
 """Processor time above which a case is a violation."""
 
 
-def outcome_of(rng: Random, *, refined: bool | None = None) -> Outcome:
+def classify_outcome(rng: Random, *, refined: bool | None = None) -> Outcome:
     """Draw a case, solve the case and check its properties; errors become outcomes.
 
     `refined` decides whether cells are refined or given; None: random.
     """
     start_time = time.process_time()
     checked: list[str] = []
-    now = "drawing"
+    step = "drawing"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            warnings.simplefilter("ignore", MagnitudeWarning)  # scaled cases are of any size
+            warnings.simplefilter("ignore", MagnitudeWarning)  # random cases have unusual magnitudes
             random_case = draw_case(rng, refined=refined)
-            now = "solve"
+            step = "solve"
             kind, message = _check_properties(random_case, rng, checked)
     except ViolationError as violation:
-        now = checked.pop() if checked else now
-        kind, message = "violation", f"{now}: {violation}"
+        step = checked.pop() if checked else step
+        kind, message = "violation", f"{step}: {violation}"
     except ContactStudyError as error:
         kind, message = (
             ("refused", type(error).__name__) if not checked else ("violation", f"{checked.pop()}: {error!r}")
         )
     except Exception as error:
         frame = traceback.extract_tb(error.__traceback__)[-1]
-        kind, message = "violation", f"{(checked or [now])[-1]}: {error!r} in {frame.filename}:{frame.lineno}"
+        kind, message = "violation", f"{(checked or [step])[-1]}: {error!r} in {frame.filename}:{frame.lineno}"
     seconds = time.process_time() - start_time
     if seconds > MAX_SECONDS and kind != "violation":
-        kind, message = "violation", f"{now}: {seconds:.0f} s of processor time, {kind}"
+        kind, message = "violation", f"{step}: {seconds:.0f} s of processor time, {kind}"
     return Outcome(kind, message, tuple(checked), seconds)
 
 
@@ -77,17 +77,20 @@ def _check_properties(random_case: RandomCase, rng: Random, checked: list[str]) 
     if not bool(result["converged"]):
         return "not converged", ""
     solution = SolvedCase(random_case, result, rng)
-    always, in_turn = properties.CONSTANT_CHECKS, properties.RANDOM_CHECKS
+    constant_checks, random_checks = properties.CONSTANT_CHECKS, properties.RANDOM_CHECKS
     if solution.moves:
-        always, in_turn = always + motion_properties.CONSTANT_CHECKS, motion_properties.RANDOM_CHECKS
-    for holds in always:
-        checked.append(holds.__name__)
-        if not holds(solution):
+        constant_checks, random_checks = (
+            constant_checks + motion_properties.CONSTANT_CHECKS,
+            motion_properties.RANDOM_CHECKS,
+        )
+    for check_property in constant_checks:
+        checked.append(check_property.__name__)
+        if not check_property(solution):
             checked.pop()
-    # The first applicable property.
-    for holds in rng.sample(in_turn, len(in_turn)):
-        checked.append(holds.__name__)
-        if holds(solution):
+    # One random property that applies to the case.
+    for check_property in rng.sample(random_checks, len(random_checks)):
+        checked.append(check_property.__name__)
+        if check_property(solution):
             break
         checked.pop()
     return "converged", ""

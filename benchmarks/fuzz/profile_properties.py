@@ -1,4 +1,4 @@
-"""Properties of profiles: a user's class has the pressure of its formula, without bound at its corners."""
+"""Properties of profiles: the pressure depends on the drop alone, and is infinite at a corner."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ PROFILES_BEYOND_DROP = ("Measured", "Tapered")
 
 
 @dataclass(frozen=True)
-class DropAlone:
-    """A user's class that has the drop of a formula and no other method."""
+class DropOnly:
+    """A user's class with the drop of a profile and no other method."""
 
     profile: Profile
 
@@ -28,46 +28,48 @@ class DropAlone:
 
 
 def has_corners(profile: Profile) -> bool:
-    """Whether a profile is a chamfer, two halves or a sum with one of them."""
+    """Whether a profile is a chamfer, two halves, or a sum that contains a chamfer or halves."""
     return isinstance(profile, (Chamfer, Halves)) or (isinstance(profile, Sum) and any(map(has_corners, profile.terms)))
 
 
 def drop_determines_the_peak(solution: SolvedCase) -> bool:
-    """A class with the drop alone has the peak of the profile, infinite at a corner."""
-    cells = solution.random_case
-    roller = cells.case.roller
+    """A class with the drop alone has the peak pressure of the profile, infinite at a corner."""
+    case_on_cells = solution.random_case
+    roller = case_on_cells.case.roller
     if (
-        cells.grid is not None
+        case_on_cells.grid is not None
         or not has_corners(roller.profile)
         or any(map(repr(roller.profile).count, PROFILES_BEYOND_DROP))
     ):
         return False
-    user_case = replace(cells.case, roller=replace(roller, profile=DropAlone(roller.profile)))
-    peaks = [solve_peak(random_case) for random_case in (cells, replace(cells, case=user_case))]
+    user_case = replace(case_on_cells.case, roller=replace(roller, profile=DropOnly(roller.profile)))
+    peaks = [solve_peak(random_case) for random_case in (case_on_cells, replace(case_on_cells, case=user_case))]
     (peak, error), (user_peak, user_error) = peaks
     agrees = abs(peak - user_peak) <= error + user_error if np.isfinite(peak) else np.isinf(user_peak)
     require(bool(agrees), f"a peak of {user_peak:.6g} with the drop alone, {peak:.6g} of the profile")
     return True
 
 
-MIN_BEND = 1e-5
+MIN_CORNER_JUMP = 1e-5
 """Least jump of the slope that is a corner, above the package's bound for rounding."""
 
 
-def convex_bends(profile: Profile) -> list[tuple[float, float]]:
+def find_convex_bends(profile: Profile) -> list[tuple[float, float]]:
     """Distances from mid-length, and jumps, of the convex bends of a user's profile, alone or in a sum."""
     if isinstance(profile, Sum):
-        return [bend for term in profile.terms for bend in convex_bends(term)]
+        return [bend for term in profile.terms for bend in find_convex_bends(term)]
     if not isinstance(profile, Polyline):
         return []
     jumps = np.diff(np.diff(profile.drops) / np.diff(profile.positions))
-    return [(x, jump) for x, jump in zip(profile.positions[1:-1], jumps.tolist(), strict=True) if jump > MIN_BEND]
+    return [
+        (x, jump) for x, jump in zip(profile.positions[1:-1], jumps.tolist(), strict=True) if jump > MIN_CORNER_JUMP
+    ]
 
 
 def pressed_corner_is_unbounded(solution: SolvedCase) -> bool:
     """The corner of refined cells is the strongest convex bend of a user's profile that is pressed on both sides."""
     case = solution.random_case.case
-    bends = convex_bends(case.roller.profile)
+    bends = find_convex_bends(case.roller.profile)
     if solution.moves or not bends or "Measured" in repr(case.roller.profile):
         return False
     try:
@@ -80,14 +82,15 @@ def pressed_corner_is_unbounded(solution: SolvedCase) -> bool:
     for distance, jump in bends:
         x = case.roller_middle + distance + 1e-9 * case.roller.length * np.array([-1.0, 1.0])
         if edges[0] < x[0] and x[1] < edges[-1] and is_loaded[np.searchsorted(edges, x) - 1].all():
-            stated = f"a corner of slope {slope:.4g} and a peak of {peak:.4g} are stated"
+            corner_text = f"a corner of slope {slope:.4g} and a peak of {peak:.4g} are stated"
             require(
-                np.isinf(peak) and slope > 0.999 * jump, f"a bend of {jump:.4g} at x = {x[0]:.6g} is pressed: {stated}"
+                np.isinf(peak) and slope > 0.999 * jump,
+                f"a bend of {jump:.4g} at x = {x[0]:.6g} is pressed: {corner_text}",
             )
     return True
 
 
 def solve_peak(random_case: RandomCase) -> tuple[float, float]:
-    """Peak and its error."""
+    """Peak pressure and its error."""
     result = run(random_case)
     return float(result["peak_pressure"]), float(result["peak_pressure_error"])

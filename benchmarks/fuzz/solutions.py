@@ -1,4 +1,4 @@
-"""A solved random case, and solving it again."""
+"""A solved random case, and solutions of its variants."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from contactstudy.arrays.variables import cell_coordinates
 from contactstudy.contact import ContactSettings
 
 TOLERANCE = 1e-6
-"""Of every contact."""
+"""Tolerance of every contact."""
 
 SAME_PRESSURE = 2e-3
-"""Largest difference of two solutions of one contact: both meet the tolerance."""
+"""Largest difference of two solutions of one contact that meet the tolerance, over the peak pressure."""
 
 
 class ViolationError(AssertionError):
@@ -65,7 +65,7 @@ class SolvedCase:
 
     @property
     def grid(self) -> Grid:
-        """Cells."""
+        """Cells of the solution."""
         grid = self.cells.grid
         assert grid is not None
         return grid
@@ -89,13 +89,14 @@ def run(random_case: RandomCase, **positions: list[float]) -> xr.Dataset:
             tolerance=TOLERANCE,
             **positions,
         )
-    kinds = {warning.category for warning in caught}
-    unexpected = [
+    categories = {warning.category for warning in caught}
+    unexpected_warnings = [
         str(warning.message) for warning in caught if warning.category not in (ConvergenceWarning, MagnitudeWarning)
     ]
-    require(not unexpected, f"an undeclared warning: {unexpected[:1]}")
+    require(not unexpected_warnings, f"an undeclared warning: {unexpected_warnings[:1]}")
     require(
-        bool(result["converged"]) == (ConvergenceWarning not in kinds), "converged and warning contradict each other"
+        bool(result["converged"]) == (ConvergenceWarning not in categories),
+        "converged and warning contradict each other",
     )
     return result
 
@@ -108,13 +109,15 @@ def solve_again(random_case: RandomCase) -> np.ndarray | None:
         else:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", ConvergenceWarning)
-                result = contact(random_case.case, on_cells(random_case.grid, random_case.case.gap(random_case.grid)))
+                result = solve_gap(
+                    random_case.case, label_cells(random_case.grid, random_case.case.gap(random_case.grid))
+                )
     except ContactStudyError as error:
         raise ViolationError(f"a variant of a solved case was refused: {type(error).__name__}: {error}") from error
     return result["pressure"].values if bool(result["converged"]) else None
 
 
-def on_cells(grid: Grid, values: np.ndarray) -> xr.DataArray:
+def label_cells(grid: Grid, values: np.ndarray) -> xr.DataArray:
     """Label values on cells."""
     coordinates = {"x": grid.x, "y": grid.y} | cell_coordinates(grid)
     return xr.DataArray(
@@ -122,7 +125,7 @@ def on_cells(grid: Grid, values: np.ndarray) -> xr.DataArray:
     )
 
 
-def contact(case: Case, gap: xr.DataArray) -> xr.Dataset:
+def solve_gap(case: Case, gap: xr.DataArray) -> xr.Dataset:
     """Contact of a case from its gap."""
     return solve_contact(
         case.body,
@@ -134,8 +137,8 @@ def contact(case: Case, gap: xr.DataArray) -> xr.Dataset:
     )
 
 
-def close(quantity: str, first: np.ndarray, second: np.ndarray, scale: float, bound: float) -> None:
+def require_close(quantity: str, values: np.ndarray, expected: np.ndarray, scale: float, bound: float) -> None:
     """Require two arrays to agree."""
-    require(first.shape == second.shape, f"{quantity}: shapes {first.shape} and {second.shape}")
-    difference = float(np.abs(first - second).max()) / scale
+    require(values.shape == expected.shape, f"{quantity}: shapes {values.shape} and {expected.shape}")
+    difference = float(np.abs(values - expected).max()) / scale
     require(difference <= bound, f"{quantity}: differ by {difference:.3g}, allowed {bound:g}")

@@ -1,1 +1,1 @@
-"""Changed signs and factors in the solver's core, one at a time, and whether a test notices."""
+"""Single changes of signs and factors in the solver's core, each with the test that fails."""

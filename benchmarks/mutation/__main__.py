@@ -1,9 +1,9 @@
 """Try changes of the solver's core: ``python -m benchmarks.mutation --notes FOLDER``.
 
-At first every test that may notice something is run once, and ``FOLDER/reached.jsonl`` notes which lines of the core
-it runs and how long it takes. Then each change is made in a fork of the process that has imported everything, and the
-tests that run the changed statement are run, those first that have noticed most for their time. ``FOLDER/tried.jsonl``
-has a line for each change that was tried; begun again, the run goes on.
+First, every selected test runs once, and ``FOLDER/reached.jsonl`` stores its lines of the core and its time. Then each
+change is made in a fork of the process with all imports. The tests of the changed statement run; tests with many
+failures per time run first. ``FOLDER/tried.jsonl`` has a line for each tested change; a second run continues with the
+remaining changes.
 """
 
 from __future__ import annotations
@@ -21,24 +21,24 @@ from typing import Any
 
 from benchmarks.mutation.equivalent import EQUIVALENT
 from benchmarks.mutation.forks import TESTS, Reached, Session, with_session
-from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants
+from benchmarks.mutation.mutants import PACKAGES, Mutant, list_mutants
 
 Notes = dict[str, Any]
 
 
 def read_notes(file: Path, key: str) -> dict[str, Notes]:
-    """Lines of JSON by one of their entries; the last line of each is used."""
+    """Lines of JSON by their entry `key`; the last line of each key counts."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
     return {note[key]: note for note in map(json.loads, lines)}
 
 
 def share_work(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
-    """Do jobs in some processes and append each result to a file.
+    """Distribute jobs over processes and append each result to a file.
 
     Raises
     ------
     RuntimeError
-        If a process ended before it had done its jobs.
+        If a process ends before its last job.
     """
     for process_index in range(processes):
         if os.fork():
@@ -55,60 +55,62 @@ def share_work(work: Callable[[Any], Notes], jobs: list[Any], file: Path, proces
             os._exit(1)
     exit_codes = [os.wait()[1] for _ in range(processes)]
     if any(exit_codes):
-        raise RuntimeError("a process ended early: begin again, the results so far are kept")
+        raise RuntimeError("a process ended early: run the command again, the results so far are kept")
 
 
 class Trials:
-    """Changes that are tried by the tests that reach them, until one fails or `seconds` of tests have passed."""
+    """Trials of changes: the tests of the changed lines run until one fails, or for `seconds`."""
 
     def __init__(self, session: Session, reached: Iterable[Reached], seconds: float) -> None:
         self.session, self.seconds = session, seconds
-        self.taken: dict[str, float] = {}
-        self.by_line: dict[tuple[str, str], set[str]] = defaultdict(set)
-        self.noticed: dict[str, Counter[str]] = defaultdict(Counter)
+        self.test_seconds: dict[str, float] = {}
+        self.tests_by_line: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self.failure_counts: dict[str, Counter[str]] = defaultdict(Counter)
         for reached_test in reached:
             if not reached_test.passed or reached_test.test not in session.items:
                 continue
-            self.taken[reached_test.test] = reached_test.seconds
+            self.test_seconds[reached_test.test] = reached_test.seconds
             for file, lines in reached_test.lines.items():
                 for line in lines:
-                    self.by_line[file, line].add(reached_test.test)
+                    self.tests_by_line[file, line].add(reached_test.test)
 
-    def learn(self, notes: dict[str, Notes]) -> None:
-        """Count which tests noticed changes that were tried before."""
+    def count_failures(self, notes: dict[str, Notes]) -> None:
+        """Count the failures of each test in previous trials."""
         for change, note in notes.items():
-            self.noticed[change.split(":")[0]][note["by"].split(" (")[0]] += 1
+            self.failure_counts[change.split(":")[0]][note["by"].split(" (")[0]] += 1
 
     def tests(self, mutant: Mutant) -> list[tuple[str, float]]:
-        """Tests that run a changed statement, with their seconds: the most promising first."""
-        reaching = set().union(*(self.by_line[mutant.file, line] for line in mutant.lines))
-        noticed_tests = self.noticed[mutant.file]
-        promising = sorted(reaching, key=lambda test: (self.taken[test] + 0.05) / (1 + 5 * noticed_tests[test]))
-        chosen, total = [], 0.0
-        for test in promising:
-            if total + self.taken[test] <= self.seconds:
-                chosen.append((test, self.taken[test]))
-                total += self.taken[test]
-        return chosen
+        """Tests that run a changed statement, with their seconds, ordered by failures per time."""
+        reaching_tests = set().union(*(self.tests_by_line[mutant.file, line] for line in mutant.lines))
+        failures_by_test = self.failure_counts[mutant.file]
+        ordered_tests = sorted(
+            reaching_tests, key=lambda test: (self.test_seconds[test] + 0.05) / (1 + 5 * failures_by_test[test])
+        )
+        chosen_tests, total_seconds = [], 0.0
+        for test in ordered_tests:
+            if total_seconds + self.test_seconds[test] <= self.seconds:
+                chosen_tests.append((test, self.test_seconds[test]))
+                total_seconds += self.test_seconds[test]
+        return chosen_tests
 
     def try_mutant(self, mutant: Mutant) -> Notes:
-        """Try a change and return the failing test."""
+        """Test a change and return the first failing test."""
         tests = self.tests(mutant)
-        by = self.session.first_failure(tests, mutant)
-        self.noticed[mutant.file][by.split(" (")[0]] += 1
-        print("noticed" if by else "MISSED ", mutant.key, flush=True)
-        return {"change": mutant.key, "by": by, "tests": len(tests)}
+        failing_test = self.session.find_first_failure(tests, mutant)
+        self.failure_counts[mutant.file][failing_test.split(" (")[0]] += 1
+        print("noticed" if failing_test else "MISSED ", mutant.key, flush=True)
+        return {"change": mutant.key, "by": failing_test, "tests": len(tests)}
 
 
-def summary(notes: dict[str, Notes]) -> str:
-    """Counts by package, and every change that no test noticed."""
+def format_summary(notes: dict[str, Notes]) -> str:
+    """Counts by package, and every change without a failing test."""
     lines = []
     for package in PACKAGES:
         notes_of_package = [note for key, note in notes.items() if f"/{package}/" in key]
         survivors = [note for note in notes_of_package if not note["by"]]
         equivalent = [note for note in survivors if note["change"] in EQUIVALENT]
         lines.append(
-            f"{package}: {len(notes_of_package)} tried, {len(notes_of_package) - len(survivors)} noticed, "
+            f"{package}: {len(notes_of_package)} tried, {len(notes_of_package) - len(survivors)} failure_counts, "
             f"{len(equivalent)} equivalent, "
             f"{len(survivors) - len(equivalent)} missed"
         )
@@ -118,36 +120,38 @@ def summary(notes: dict[str, Notes]) -> str:
 
 
 def main() -> None:
-    """Try the selected changes."""
+    """Test the selected changes."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutation", description=__doc__)
     parser.add_argument("--notes", type=Path, required=True, help="folder of notes")
-    parser.add_argument("--sample", type=int, help="so many changes, drawn by lot; default: all")
-    parser.add_argument("--only", default="", help="only changes whose source or text has this in it")
+    parser.add_argument("--sample", type=int, help="number of random changes; default: all")
+    parser.add_argument("--only", default="", help="only changes whose source or text contains this string")
     parser.add_argument("--tests", nargs="+", default=TESTS, help="files of tests; default: those of the core")
-    parser.add_argument("--again", action="store_true", help="try those again that no test noticed")
+    parser.add_argument("--again", action="store_true", help="repeat the trials of changes without a failing test")
     parser.add_argument("--seconds", type=float, default=60.0, help="processor time of tests for one change")
     parser.add_argument("--processes", type=int, default=1, help="processes that share the work")
     options = parser.parse_args()
     options.notes.mkdir(parents=True, exist_ok=True)
     reached_path, tried_path = options.notes / "reached.jsonl", options.notes / "tried.jsonl"
 
-    def work(session: Session) -> None:
+    def run_trials(session: Session) -> None:
         durations = read_notes(reached_path, "test")
         tests = [test for test in session.items if test not in durations]
-        share_work(lambda test: asdict(session.reached(test)), tests, reached_path, options.processes)
+        share_work(lambda test: asdict(session.find_reached_statements(test)), tests, reached_path, options.processes)
         trials = Trials(
             session, (Reached(**note) for note in read_notes(reached_path, "test").values()), options.seconds
         )
         notes = read_notes(tried_path, "change")
-        trials.learn(notes)
-        finished = {key for key, note in notes.items() if note["by"] or not options.again}
-        mutants = [mutant for mutant in all_mutants() if options.only in mutant.key]
+        trials.count_failures(notes)
+        finished_keys = {key for key, note in notes.items() if note["by"] or not options.again}
+        mutants = [mutant for mutant in list_mutants() if options.only in mutant.key]
         Random(0).shuffle(mutants)
-        remaining = [mutant for mutant in mutants[: options.sample] if mutant.key not in finished | set(EQUIVALENT)]
+        remaining = [
+            mutant for mutant in mutants[: options.sample] if mutant.key not in finished_keys | set(EQUIVALENT)
+        ]
         share_work(trials.try_mutant, remaining, tried_path, options.processes)
-        print(summary(read_notes(tried_path, "change")))
+        print(format_summary(read_notes(tried_path, "change")))
 
-    with_session(work, options.tests)
+    with_session(run_trials, options.tests)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Changes that change no number, with the reason, from ``equivalent.txt``."""
+"""Changes without an effect on any number, with reasons, from ``equivalent.txt``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def read_equivalent() -> dict[str, str]:
-    """Reason by change: in the file each reason, after a ``#``, stands before its changes."""
+    """Reason by change; in the file a reason, after ``#``, precedes its changes."""
     reasons, reason = {}, ""
     for line in Path(__file__).with_suffix(".txt").read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):

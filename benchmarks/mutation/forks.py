@@ -1,4 +1,4 @@
-"""Collected tests in forks of one process, which imports the package once.
+"""Run collected tests in forks of one process with the imported package.
 
 Forks share no results and no changes: a test in a fork runs alone.
 """
@@ -41,7 +41,7 @@ CORE = tuple(str(ROOT / "contactstudy" / package) for package in PACKAGES)
 
 @dataclass(frozen=True)
 class Reached:
-    """A test without any change.
+    """Run of a test without a change.
 
     Attributes
     ----------
@@ -80,18 +80,18 @@ class Session:
         functions = defaultdict(list)
         for function in gc.get_objects():
             if isinstance(function, FunctionType) and function.__code__.co_filename.startswith(CORE):
-                functions[_code_key(function.__code__)].append(function)
+                functions[_make_code_key(function.__code__)].append(function)
         self.functions = dict(functions)
-        gc.freeze()  # the first collection in each fork would copy every imported object
+        gc.freeze()  # a garbage collection in a fork would copy every imported object
 
-    def reached(self, test: str) -> Reached:
+    def find_reached_statements(self, test: str) -> Reached:
         """Run a test without any change and record its lines."""
         lines: dict[str, set[int]] = defaultdict(set)
 
-        def work(send: Callable[[str], None]) -> None:
-            sys.settrace(_tracer(lines))
+        def run_test(send: Callable[[str], None]) -> None:
+            sys.settrace(_make_tracer(lines))
             start_time = time.process_time()
-            failed = self._fails(test)
+            test_failed = self._fails(test)
             sys.settrace(None)
             statements = {}
             for name, line_numbers in lines.items():
@@ -99,15 +99,16 @@ class Session:
                 statements[str(Path(name).relative_to(ROOT))] = sorted(
                     {texts[line_number - 1].strip() for line_number in line_numbers}
                 )
-            send(json.dumps(asdict(Reached(test, not failed, time.process_time() - start_time, statements))))
+            send(json.dumps(asdict(Reached(test, not test_failed, time.process_time() - start_time, statements))))
 
-        message, _ = run_forked(work)
+        message, _ = run_forked(run_test)
         return Reached(**json.loads(message[-1])) if message else Reached(test, False, 0.0, {})
 
-    def first_failure(self, tests: Iterable[tuple[str, float]], mutant: Mutant | None = None) -> str:
-        """Name the first of tests with their seconds that fails under a change; an empty name if all pass."""
+    def find_first_failure(self, tests: Iterable[tuple[str, float]], mutant: Mutant | None = None) -> str:
+        """Return the name of the first test that fails under a change, empty if all pass; `tests` has names and
+        seconds."""
 
-        def work(send: Callable[[str], None]) -> None:
+        def run_tests(send: Callable[[str], None]) -> None:
             if mutant:
                 self._install(mutant)
             for test, seconds in tests:
@@ -117,7 +118,7 @@ class Session:
                     return
             send("")
 
-        message, exit_code = run_forked(work)
+        message, exit_code = run_forked(run_tests)
         return message[-1] + (f" (ended by {signal.Signals(exit_code).name})" if exit_code else "")
 
     def _fails(self, test: str) -> bool:
@@ -133,9 +134,9 @@ class Session:
         return bool(failures.failed)
 
     def _install(self, mutant: Mutant) -> None:
-        """Give the functions of a source the changed code, wherever they have been imported or wrapped."""
-        for code in _within(compile(mutant.changed, str(ROOT / mutant.file), "exec")):
-            for function in self.functions.get(_code_key(code), ()):
+        """Replace the code of all functions of a source, also of imported and wrapped functions."""
+        for code in list_nested_codes(compile(mutant.changed, str(ROOT / mutant.file), "exec")):
+            for function in self.functions.get(_make_code_key(code), ()):
                 function.__code__ = code
 
 
@@ -150,7 +151,7 @@ class _Failures:
             self.failed.append(report.nodeid)
 
 
-def named(items: Iterable[pytest.Item]) -> dict[str, list[pytest.Item]]:
+def group_by_name(items: Iterable[pytest.Item]) -> dict[str, list[pytest.Item]]:
     """Tests by name; the checks of a group of `contactstudy verify` are computed together."""
     groups: dict[str, list[pytest.Item]] = defaultdict(list)
     for item in items:
@@ -159,51 +160,51 @@ def named(items: Iterable[pytest.Item]) -> dict[str, list[pytest.Item]]:
     return dict(groups)
 
 
-def _code_key(code: CodeType) -> tuple[str, str, int]:
+def _make_code_key(code: CodeType) -> tuple[str, str, int]:
     return code.co_filename, code.co_qualname, code.co_firstlineno
 
 
-def _within(code: CodeType) -> Iterator[CodeType]:
-    """Code of all functions within a module's."""
+def list_nested_codes(code: CodeType) -> Iterator[CodeType]:
+    """Code of all functions nested in a code."""
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield constant
-            yield from _within(constant)
+            yield from list_nested_codes(constant)
 
 
-def _tracer(lines: dict[str, set[int]]) -> Callable[[FrameType, str, Any], Any]:
+def _make_tracer(lines: dict[str, set[int]]) -> Callable[[FrameType, str, Any], Any]:
     """Trace that records the lines of the core."""
 
     def trace_call(frame: FrameType, event: str, value: Any) -> Any:
         name = frame.f_code.co_filename
         if not name.startswith(CORE):
             return None
-        add = lines[name].add
-        add(frame.f_lineno)
+        record_line = lines[name].add
+        record_line(frame.f_lineno)
 
-        def line(frame: FrameType, event: str, value: Any) -> Any:
-            add(frame.f_lineno)
-            return line
+        def trace_line(frame: FrameType, event: str, value: Any) -> Any:
+            record_line(frame.f_lineno)
+            return trace_line
 
-        return line
+        return trace_line
 
     return trace_call
 
 
-def run_forked(work: Callable[[Callable[[str], None]], None]) -> tuple[list[str], int]:
-    """Run a function in a fork: its messages, and the signal that ended it or 0."""
-    read, write = os.pipe()
+def run_forked(send_messages: Callable[[Callable[[str], None]], None]) -> tuple[list[str], int]:
+    """Run a function in a fork; return its messages, and the signal that ended the fork or 0."""
+    read_end, write_end = os.pipe()
     process = os.fork()
     if not process:
         try:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-            work(lambda message: _write(write, f"{message}\n".encode()))
+            send_messages(lambda message: _write(write_end, f"{message}\n".encode()))
         finally:
             os._exit(0)
-    os.close(write)
-    with open(read, encoding="utf-8") as lines:
-        message = lines.read().split("\n")[:-1]
+    os.close(write_end)
+    with open(read_end, encoding="utf-8") as stream:
+        message = stream.read().split("\n")[:-1]
     _, status = os.waitpid(process, 0)
     return message, os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
 
@@ -214,13 +215,13 @@ def _write(file: int, message: bytes) -> None:
 
 
 def with_session(work: Callable[[Session], None], tests: Iterable[str]) -> None:
-    """Collect tests and do something with them instead of running them."""
+    """Collect tests and pass them to `work` instead of running them."""
 
     class Loop:
         def pytest_runtestloop(self, session: pytest.Session) -> bool:
-            work(Session(named(session.items)))
+            work(Session(group_by_name(session.items)))
             return True
 
     options = ["-n", "0", "-q", "--no-header", "-p", "no:cacheprovider", "-p", "no:faulthandler", "-s"]
-    os.environ["CI"] = "1"  # the same examples of properties each time
+    os.environ["CI"] = "1"  # hypothesis draws the same examples each time
     pytest.main(["--rootdir", str(ROOT), *options, *(str(ROOT / name) for name in tests)], plugins=[Loop()])

@@ -16,7 +16,7 @@ PACKAGES = ("kernels", "overlapping", "contact")
 OTHER_OPERATORS = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 """Arithmetic signs and their changes."""
 
-REVERSED = {ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">="), ast.GtE: (">=", "<=")}
+REVERSED_COMPARISONS = {ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">="), ast.GtE: (">=", "<=")}
 """Comparisons and their changes."""
 
 FACTOR = 1.1
@@ -36,9 +36,9 @@ class Mutant:
     text : str
         Replacement of the text.
     lines : tuple of str
-        Lines of the statement around it, without those of statements within.
+        Lines of the changed statement, without the lines of nested statements.
     where : str
-        The function.
+        Name of the function.
     description : str
         The line before and after.
     """
@@ -54,7 +54,7 @@ class Mutant:
 
     @property
     def key(self) -> str:
-        """Identity of a change, also after lines have moved."""
+        """Identity of a change, independent of line numbers."""
         return f"{self.file}: {self.where}: {self.description}"
 
     @property
@@ -63,26 +63,26 @@ class Mutant:
         return self.source[: self.start] + self.text + self.source[self.stop :]
 
 
-def mutants_of(file: str, source: str) -> Iterator[Mutant]:
+def list_mutants_of_function(file: str, source: str) -> Iterator[Mutant]:
     """All changes of the bodies of a source's functions."""
     starts = [0]
     for line in source.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
 
-    def offset_of(line: int, column: int) -> int:
-        # ast counts bytes; sources hold other letters in comments and docstrings only.
+    def compute_offset(line: int, column: int) -> int:
+        # ast counts bytes; code without comments and docstrings is ASCII.
         return starts[line - 1] + column
 
-    texts, times = source.splitlines(), Counter[str]()
+    texts, occurrences = source.splitlines(), Counter[str]()
 
     def mutant(lines: range, where: str, start: int, stop: int, text: str) -> Mutant:
         line_number = source.count("\n", 0, start) + 1
         changed_source = source[:start] + text + source[stop:]
         before, after = (version.splitlines()[line_number - 1].strip() for version in (source, changed_source))
         description = f"{before}  ->  {after}"
-        times[where + description] += 1
-        if times[where + description] > 1:
-            description += f"  (no. {times[where + description]})"
+        occurrences[where + description] += 1
+        if occurrences[where + description] > 1:
+            description += f"  (no. {occurrences[where + description]})"
         statement = tuple(texts[line_number - 1].strip() for line_number in lines)
         return Mutant(
             file=file,
@@ -95,67 +95,67 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
             description=description,
         )
 
-    for node, lines, where in _nodes_in_functions(ast.parse(source)):
+    for node, lines, where in _list_function_nodes(ast.parse(source)):
         match node:
             case ast.BinOp(left=left, op=op) if type(op) in OTHER_OPERATORS:
                 symbol, replacement = OTHER_OPERATORS[type(op)]
-                offset = _between(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+                offset = find_sign(source, compute_offset(left.end_lineno or 0, left.end_col_offset or 0), symbol)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
                     yield mutant(lines, where, offset, offset + len(symbol), replacement)
-            case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED:
-                symbol, replacement = REVERSED[type(op)]
-                offset = _between(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+            case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED_COMPARISONS:
+                symbol, replacement = REVERSED_COMPARISONS[type(op)]
+                offset = find_sign(source, compute_offset(left.end_lineno or 0, left.end_col_offset or 0), symbol)
                 yield mutant(lines, where, offset, offset + len(symbol), replacement)
             case ast.UnaryOp(op=ast.USub(), operand=operand) if not isinstance(operand, ast.Constant):
-                offset = offset_of(node.lineno, node.col_offset)
+                offset = compute_offset(node.lineno, node.col_offset)
                 yield mutant(lines, where, offset, offset + 1, "+")
             case ast.Constant(value=float(value)) if value:
                 start, stop = (
-                    offset_of(node.lineno, node.col_offset),
-                    offset_of(node.end_lineno or 0, node.end_col_offset or 0),
+                    compute_offset(node.lineno, node.col_offset),
+                    compute_offset(node.end_lineno or 0, node.end_col_offset or 0),
                 )
                 yield mutant(lines, where, start, stop, repr(FACTOR * value))
 
 
-def _nodes_in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
-    """Nodes of functions that compute, with the lines of their statement and the function's name."""
+def _list_function_nodes(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+    """Arithmetic nodes of functions, with the lines of their statement and the function's name."""
     for node in ast.iter_child_nodes(tree):
         name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
-        yield from _nodes_in_functions(node, name)
+        yield from _list_function_nodes(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                yield from ((part, lines, name) for part, lines in _computing_nodes(statement, range(0)))
+                yield from ((subnode, lines, name) for subnode, lines in _list_computing_nodes(statement, range(0)))
 
 
-def _computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
-    """Nodes below one, without errors that are raised, texts, types and functions within, which come by themselves."""
+def _list_computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
+    """Nodes of a statement without raised errors, f-strings, assertions, types and nested functions."""
     if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
         return
     if isinstance(node, ast.stmt):
-        within = [statement.lineno for statement in getattr(node, "body", [])]
-        lines = range(node.lineno, min([*within, (node.end_lineno or 0) + 1]))
+        nested_lines = [statement.lineno for statement in getattr(node, "body", [])]
+        lines = range(node.lineno, min([*nested_lines, (node.end_lineno or 0) + 1]))
     yield node, lines
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns"):
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _computing_nodes(child, lines)
+                yield from _list_computing_nodes(child, lines)
 
 
-def _between(source: str, start: int, sign: str) -> int:
-    """Place of a sign after an operand, beyond closing brackets and comments."""
+def find_sign(source: str, start: int, operator_text: str) -> int:
+    """Offset of the operator after an operand, behind closing brackets and comments."""
     offset = start
-    while not source.startswith(sign, offset):
+    while not source.startswith(operator_text, offset):
         offset = source.index("\n", offset) if source[offset] == "#" else offset + 1
     return offset
 
 
-def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
-    """All changes of the sources of some packages, in order."""
+def list_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
+    """All changes of the sources of `packages`, ordered by file."""
     files = sorted(path for package in packages for path in (root / "contactstudy" / package).rglob("*.py"))
     return [
         mutant
         for path in files
-        for mutant in mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
+        for mutant in list_mutants_of_function(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
     ]

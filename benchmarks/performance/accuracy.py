@@ -1,12 +1,12 @@
-"""How often the stated errors hold: random cases, solved with a loose and a tight accuracy.
+"""Coverage of the stated errors: random cases, solved with a loose and a tight accuracy.
 
 Usage: ``python -m benchmarks.performance.accuracy [--cases 60] [--seed 1] [--first 0] [--accuracy 0.02]
 [--reference 0.002] [--markdown FILE]``.
 
 Each case has a random body, roller length, profile, tilt or load position, end distance, roller material and load. It
-is solved to `accuracy` and to `reference`. A value is covered if the two differ by no more than the error stated with
-the first. A singular end is covered if both runs say so; its intensity K is counted apart. Case ``n`` of a seed is the
-same whatever the number of cases, so a single one is repeated with ``--first n --cases 1``.
+is solved to `accuracy` and to `reference`. A value is covered if the two values differ by no more than the error stated
+at `accuracy`. A singular end is covered if both pressures are infinite; its intensity K has a row of its own. Case
+``n`` of a seed does not depend on the number of cases: ``--first n --cases 1`` repeats it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ INTENSITIES = ("end_intensity_first", "end_intensity_last")
 
 @dataclass(frozen=True)
 class RandomCase:
-    """A random case and its name, or the reason of its refusal."""
+    """A random case and its description; None and the reason for a refused case."""
 
     number: int
     name: str
@@ -55,13 +55,13 @@ class Comparison:
 
     @property
     def is_covered(self) -> bool:
-        """Whether the stated error covers the difference, or both runs find the end singular."""
+        """Whether the stated error covers the difference, or both pressures are infinite."""
         if np.isinf(self.loose) or np.isinf(self.tight):
             return bool(self.loose == self.tight)
         return abs(self.loose - self.tight) <= self.error
 
 
-def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+def _draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
@@ -70,11 +70,11 @@ def draw_case(seed: int, number: int) -> RandomCase:
     rng = np.random.default_rng([seed, number])
     p0 = rng.uniform(0.8e9, 3e9)
     material = [None, None, None, STEEL, BRONZE][rng.integers(5)]
-    plane = STEEL.plane_strain_modulus
-    modulus = plane if material is None else 1 / (1 / plane + 1 / material.plane_strain_modulus)
-    a = 4 * p0 * RADIUS / (2 * modulus)
-    length = a * _log_uniform(rng, 8, 200)
-    kind, profile = _profile(rng, p0, length, modulus)
+    steel_modulus = STEEL.plane_strain_modulus
+    modulus = steel_modulus if material is None else 1 / (1 / steel_modulus + 1 / material.plane_strain_modulus)
+    half_width = 4 * p0 * RADIUS / (2 * modulus)
+    length = half_width * _draw_log_uniform(rng, 8, 200)
+    kind, profile = draw_profile(rng, p0, length, modulus)
     roller = Roller(
         radius=RADIUS, length=length, profile=profile, material=material, ends=("free", "none")[rng.integers(2)]
     )
@@ -82,22 +82,24 @@ def draw_case(seed: int, number: int) -> RandomCase:
     distance = 0.0
     if body_kind != "half":
         distance = float(
-            (0.0, a * _log_uniform(rng, 0.1, 5), -a * rng.uniform(0.1, 2))[rng.choice(3, p=[0.5, 0.4, 0.1])]
+            (0.0, half_width * _draw_log_uniform(rng, 0.1, 5), -half_width * rng.uniform(0.1, 2))[
+                rng.choice(3, p=[0.5, 0.4, 0.1])
+            ]
         )
     body: Body = HalfSpace(material=STEEL)
     if body_kind == "quarter":
         body = QuarterSpace(material=STEEL)
     elif body_kind == "finite":
-        second_distance = distance if rng.random() < 0.5 else a * rng.uniform(0.0, 5)
+        second_distance = distance if rng.random() < 0.5 else half_width * rng.uniform(0.0, 5)
         body = FiniteLengthSpace(length=length + distance + second_distance, material=STEEL)
     inclination: dict[str, float] = {}
-    slope = min(1.0, 20 * a / length)
-    if (choice := rng.random()) < 0.3:
+    slope = min(1.0, 20 * half_width / length)
+    if (draw := rng.random()) < 0.3:
         inclination = {"tilt": float(rng.uniform(-1e-3, 1e-3) * slope)}
-    elif choice < 0.4:
+    elif draw < 0.4:
         inclination = {"load_position": distance + length * (0.5 + 0.05 * float(rng.uniform(-1, 1)))}
     name = (
-        f"{kind}, L {length / a:.0f}a, {p0 / 1e9:.2f} GPa, {body_kind}, e {distance / a:.2f}a, "
+        f"{kind}, L {length / half_width:.0f}a, {p0 / 1e9:.2f} GPa, {body_kind}, e {distance / half_width:.2f}a, "
         f"{'rigid' if material is None else 'steel' if material is STEEL else 'bronze'}"
         + (f" ends {roller.ends}" if material is not None else "")
         + "".join(f", {key} {value:.2e}" for key, value in inclination.items())
@@ -118,10 +120,10 @@ def draw_case(seed: int, number: int) -> RandomCase:
         return RandomCase(number, f"{name}: {error}", None)
 
 
-def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float) -> tuple[str, profiles.Profile]:
+def draw_profile(rng: np.random.Generator, p0: float, length: float, modulus: float) -> tuple[str, profiles.Profile]:
     """Draw a profile and its name."""
-    fillet = min(_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
-    sag = _log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
+    fillet = min(_draw_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
+    sag = _draw_log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
     crown = profiles.FullCrown(crown_radius=length**2 / (8 * sag))
     rounded_cylinder = profiles.Cylinder(fillet_radius=fillet)
     kind = ("sharp", "fillet", "crown", "crown + fillet", "lundberg", "partial crown", "measured")[rng.integers(7)]
@@ -139,9 +141,11 @@ def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float)
         pressure = p0 * rng.uniform(0.6, 1.2)
         return name, profiles.Lundberg.for_pressure(pressure, radius=RADIUS, modulus=modulus)
     if kind == "partial crown":
-        straight = length * rng.uniform(0.3, 0.8)
-        radius = _log_uniform(rng, 0.1, 3.0)
-        return f"{name} {straight / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(straight, radius)
+        straight_length = length * rng.uniform(0.3, 0.8)
+        radius = _draw_log_uniform(rng, 0.1, 3.0)
+        return f"{name} {straight_length / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(
+            straight_length, radius
+        )
     x = np.linspace(-0.5 * length, 0.5 * length, 401)
     drops = (crown + rounded_cylinder).drop(x, length)
     return f"{name} crown {1e6 * sag:.1f} um + fillet {1e3 * fillet:.3f} mm", profiles.Measured(
@@ -150,10 +154,10 @@ def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float)
 
 
 def compare_values(random_case: RandomCase, accuracy: float, reference: float) -> Iterator[Comparison]:
-    """Settle a case twice and compare its values."""
+    """Solve a case at both accuracies and compare its values."""
     assert random_case.case is not None
     case = random_case.case
-    loose, tight = (_values(case, row) for row in (accuracy, reference))
+    loose, tight = (compute_refined_values(case, accuracy_value) for accuracy_value in (accuracy, reference))
     scale = case.hertz_max_pressure
     for value in VALUES:
         error = float(loose[f"{value}_error"]) / scale
@@ -188,26 +192,29 @@ def compare_values(random_case: RandomCase, accuracy: float, reference: float) -
             )
 
 
-def _values(case: Case, accuracy: float) -> xr.Dataset:
+def compute_refined_values(case: Case, accuracy: float) -> xr.Dataset:
     return refined_values(case, refine_contact(case, accuracy, 1e-6))
 
 
-def _table(comparisons: list[Comparison], refused: list[str], took: dict[str, float]) -> str:
-    """Markdown of the coverage and of every miss."""
+def format_table(comparisons: list[Comparison], refused: list[str], seconds_per_case: dict[str, float]) -> str:
+    """Markdown table of the coverage, and every value that is not covered."""
     lines = [
         "| value | cases | covered | % | median difference / p0 | median error / p0 |",
         "|---|---|---|---|---|---|",
     ]
     for value in (*VALUES, *LOADS, *INTENSITIES):
         rows = [row for row in comparisons if row.value == value]
-        finite = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
+        finite_rows = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
         if rows:
-            covered = sum(row.is_covered for row in rows)
-            median_difference = np.median([abs(row.loose - row.tight) for row in finite]) if finite else np.nan
-            error = np.median([row.error for row in finite]) if finite else np.nan
-            percentage = 100 * covered / len(rows)
+            covered_count = sum(row.is_covered for row in rows)
+            median_difference = (
+                np.median([abs(row.loose - row.tight) for row in finite_rows]) if finite_rows else np.nan
+            )
+            error = np.median([row.error for row in finite_rows]) if finite_rows else np.nan
+            percentage = 100 * covered_count / len(rows)
             lines.append(
-                f"| {value} | {len(rows)} | {covered} | {percentage:.1f} | {median_difference:.4f} | {error:.4f} |"
+                f"| {value} | {len(rows)} | {covered_count} | {percentage:.1f} | {median_difference:.4f} "
+                f"| {error:.4f} |"
             )
     case_numbers = sorted({row.random_case.number for row in comparisons})
     missed_cases = {row.random_case.number for row in comparisons if not row.is_covered and row.value in VALUES}
@@ -215,10 +222,14 @@ def _table(comparisons: list[Comparison], refused: list[str], took: dict[str, fl
         "",
         f"{len(case_numbers) - len(missed_cases)} of {len(case_numbers)} cases have all three pressures covered.",
     ]
-    lines += [f"Seconds per case: {', '.join(f'{name} {value:.2f}' for name, value in took.items())}.", "", "Misses:"]
+    lines += [
+        f"Seconds per case: {', '.join(f'{name} {value:.2f}' for name, value in seconds_per_case.items())}.",
+        "",
+        "Misses:",
+    ]
     lines += [
         f"* {row.random_case.number}: {row.random_case.name}: {row.value} {row.loose:.4f} +- {row.error:.4f}, "
-        f"tightly {row.tight:.4f}"
+        f"tight accuracy {row.tight:.4f}"
         for row in comparisons
         if not row.is_covered
     ]
@@ -251,12 +262,12 @@ def main() -> None:
             print(refused[-1], flush=True)
             continue
         comparisons += rows
-        marks = ", ".join(
+        comparison_text = ", ".join(
             f"{row.value} {row.loose:.4f} +- {row.error:.4f} / {row.tight:.4f}{'' if row.is_covered else ' MISSED'}"
             for row in rows
         )
-        print(f"{number}: {random_case.name}: {marks}", flush=True)
-    table = _table(comparisons, refused, {"both": (time.perf_counter() - start) / max(options.cases, 1)})
+        print(f"{number}: {random_case.name}: {comparison_text}", flush=True)
+    table = format_table(comparisons, refused, {"both": (time.perf_counter() - start) / max(options.cases, 1)})
     print(table)
     if options.markdown:
         options.markdown.write_text(table + "\n")

@@ -1,4 +1,4 @@
-"""Rows on the body: building the operator, stresses, and rollers that are long against their contact."""
+"""Rows on the body: construction of the operator, stresses, and rollers of many half-widths."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from benchmarks.performance.peers import contact_of
+from benchmarks.performance.peers import solve_peer_contact
 from benchmarks.performance.problems import HALF_WIDTH, STEEL, roller
-from benchmarks.performance.timing import Report, Row, medians, nudge, show
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, nudge
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, cache, stress_field
 from contactstudy.bodies import Body
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
@@ -26,27 +26,27 @@ def build_bodies(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and the time of a second case."""
     grid = Grid(x_range=(0.0, 8 * HALF_WIDTH), y_range=(-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), cells_x=128, cells_y=64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
-    former_nbytes = cache.info().nbytes
+    previous_bytes = cache.info().nbytes
     surface_operator(body, grid)
-    megabytes = (cache.info().nbytes - former_nbytes) / 1e6
-    works: dict[str, Callable[[], object]] = {
+    megabytes = (cache.info().nbytes - previous_bytes) / 1e6
+    timed_functions: dict[str, Callable[[], object]] = {
         "cold": lambda: SurfaceOperator.of(body, grid),
         "friction": lambda: SurfaceOperator.of(body, grid, (Load.NORMAL, Load.ALONG_Y)),
         "kept": lambda: surface_operator(body, grid),
     }
-    seconds = medians(works, repeats, warm_up=False)
+    seconds = compute_medians(timed_functions, repeats, warm_up=False)
     yield Row(
         work="building the operator, 128 x 64, L = 8a",
-        ours=show(seconds["cold"]),
+        ours=format_time(seconds["cold"]),
         bar="1 s",
         met=seconds["cold"] <= 1.0,
-        notes=f"with traction {show(seconds['friction'])}; reused by a second case in "
+        notes=f"with traction {format_time(seconds['friction'])}; reused by a second case in "
         f"{1e6 * seconds['kept']:.0f} µs; {megabytes:.0f} MB",
     )
 
 
 def stresses(repeats: int, _: Report) -> Iterator[Row]:
-    """Six stresses on 128 x 128 x 32 points: everything new, and a new pressure on the same cells."""
+    """Six stresses on 128 x 128 x 32 points: without kept kernels, and for a new pressure on the same cells."""
     length, window = 8 * HALF_WIDTH, 4 * HALF_WIDTH
     z = np.linspace(0.0, 3 * HALF_WIDTH, 32)
     bodies: dict[str, Body] = {
@@ -54,49 +54,55 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
         "finite-length": FiniteLengthSpace(length=length, material=STEEL),
     }
     grid = Grid(x_range=(0.0, length), y_range=(-window / 2, window / 2), cells_x=128, cells_y=128)
-    line = 1e9 * np.sqrt(np.maximum(1 - (grid.y / HALF_WIDTH) ** 2, 0.0)) * np.ones((128, 1))
-    # As wide an ellipse: its edge on the cells is another one in every section, so nothing is a product of x and y.
+    line_pressure = 1e9 * np.sqrt(np.maximum(1 - (grid.y / HALF_WIDTH) ** 2, 0.0)) * np.ones((128, 1))
+    # An ellipse of the same width: the pressure is no product of functions of x and y.
     axial = 2 * grid.x[:, None] / length - 1
-    ellipse = 1e9 * np.sqrt(np.maximum(1 - axial**2 - (grid.y / HALF_WIDTH) ** 2, 0.0))
+    elliptic_pressure = 1e9 * np.sqrt(np.maximum(1 - axial**2 - (grid.y / HALF_WIDTH) ** 2, 0.0))
 
-    def field(body: Body, friction: float, load: np.ndarray, first_call: bool) -> xr.Dataset:
+    def compute_stresses(body: Body, friction: float, load: np.ndarray, first_call: bool) -> xr.Dataset:
         pressure = xr.DataArray(load * nudge(), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-        # Kernels are kept by depth: other depths have none.
+        # New depths have no kept kernels.
         return stress_field(
             body, pressure, friction=friction, z=z * nudge() if first_call else z, inside_cells=pressure
         )
 
     def time_stresses(friction: float, load: np.ndarray, first_call: bool) -> dict[str, float]:
-        works: dict[str, Callable[[], object]] = {
-            name: partial(field, body, friction, load, first_call) for name, body in bodies.items()
+        timed_functions: dict[str, Callable[[], object]] = {
+            name: partial(compute_stresses, body, friction, load, first_call) for name, body in bodies.items()
         }
-        return medians(works, repeats)
+        return compute_medians(timed_functions, repeats)
 
-    sliding = time_stresses(0.3, line, False)
-    first_call = time_stresses(0.0, line, True)
-    for name, seconds, bar in (("", first_call, 0.26), ("..., same cells", time_stresses(0.0, line, False), 0.11)):
+    sliding_seconds = time_stresses(0.3, line_pressure, False)
+    first_call = time_stresses(0.0, line_pressure, True)
+    for name, seconds, bar in (
+        ("", first_call, 0.26),
+        ("..., same cells", time_stresses(0.0, line_pressure, False), 0.11),
+    ):
         yield Row(
             work=f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
-            ours=show(seconds["half-space"]),
+            ours=format_time(seconds["half-space"]),
             bar=f"{bar} s",
             met=seconds["half-space"] <= bar,
-            notes="with friction " + show(sliding["half-space"]) if name else "",
+            notes="with friction " + format_time(sliding_seconds["half-space"]) if name else "",
         )
-        yield _against_half_space(f"... finite-length{name}", seconds)
+        yield compare_with_half_space(f"... finite-length{name}", seconds)
     for name, is_cold in (("", True), ("..., same cells", False)):
-        yield _against_half_space(
-            f"... under an elliptic pressure, finite-length{name}", time_stresses(0.0, ellipse, is_cold)
+        yield compare_with_half_space(
+            f"... under an elliptic pressure, finite-length{name}", time_stresses(0.0, elliptic_pressure, is_cold)
         )
 
 
-def _against_half_space(work: str, seconds: dict[str, float]) -> Row:
-    """Row on a body with ends, whose bar is twice the half-space's time."""
+def compare_with_half_space(work: str, seconds: dict[str, float]) -> Row:
+    """Row of a body with ends; its bar is twice the time of the half-space."""
     ratio = seconds["finite-length"] / seconds["half-space"]
-    seconds_finite, half_space_text = show(seconds["finite-length"]), "our half-space " + show(seconds["half-space"])
+    seconds_finite, peer_text = (
+        format_time(seconds["finite-length"]),
+        "our half-space " + format_time(seconds["half-space"]),
+    )
     return Row(
         work=work,
         ours=seconds_finite,
-        peers=half_space_text,
+        peers=peer_text,
         ratio=f"{ratio:.2f}",
         bar="2x the half-space",
         met=ratio <= 2,
@@ -108,23 +114,23 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     contact_seconds, build_seconds, application_counts = {}, {}, {}
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)
-        grid = Grid.from_centres(problem.gap_array()["x"].values, problem.gap_array()["y"].values)
-        make = partial(SurfaceOperator.of, problem.body, grid)
-        build_seconds[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
-        contact_seconds[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
-        application_counts[cells] = int(contact_of(problem)["iterations"])
-    first, last = LONG_CELLS[0], LONG_CELLS[-1]
-    growth = contact_seconds[last] / contact_seconds[first] / (last / first)
-    per_application = growth * application_counts[first] / application_counts[last]
+        grid = Grid.from_centres(problem.make_gap_array()["x"].values, problem.make_gap_array()["y"].values)
+        build_operator = partial(SurfaceOperator.of, problem.body, grid)
+        build_seconds[cells] = compute_medians({"build": build_operator}, min(repeats, 3), warm_up=False)["build"]
+        contact_seconds[cells] = compute_medians({"contact": partial(solve_peer_contact, problem)}, repeats)["contact"]
+        application_counts[cells] = int(solve_peer_contact(problem)["iterations"])
+    shortest, longest = LONG_CELLS[0], LONG_CELLS[-1]
+    growth = contact_seconds[longest] / contact_seconds[shortest] / (longest / shortest)
+    growth_per_application = growth * application_counts[shortest] / application_counts[longest]
     times = ", ".join(
-        f"{cells}: {show(seconds)} ({application_counts[cells]} applications)"
+        f"{cells}: {format_time(seconds)} ({application_counts[cells]} applications)"
         for cells, seconds in contact_seconds.items()
     )
     yield Row(
         work="contact 1000 x 48, L = 100a, built",
-        ours=show(contact_seconds[last]),
+        ours=format_time(contact_seconds[longest]),
         bar="1.5 s",
-        met=contact_seconds[last] <= 1.5,
+        met=contact_seconds[longest] <= 1.5,
         notes=times,
     )
     yield Row(
@@ -132,12 +138,12 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
         ours=f"{growth:.2f}",
         bar="1.2",
         met=growth <= 1.2,
-        notes=f"per operator application {per_application:.2f}",
+        notes=f"per operator application {growth_per_application:.2f}",
     )
     yield Row(
         work="building the operator, 1000 x 48, L = 100a",
-        ours=show(build_seconds[last]),
-        notes=", ".join(f"{cells}: {show(build_seconds[cells])}" for cells in LONG_CELLS),
+        ours=format_time(build_seconds[longest]),
+        notes=", ".join(f"{cells}: {format_time(build_seconds[cells])}" for cells in LONG_CELLS),
     )
     yield from memory(report)
 

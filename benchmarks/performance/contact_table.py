@@ -1,8 +1,9 @@
 """Time, memory and bytes of a table of contact numbers: 1000 distinct contacts, each with ten frictions.
 
-Usage: ``python -m benchmarks.performance.contact_table [--sample 20] [--workers 0] [--profile]``; a sample of 1000
-solves all. A cylindrical roller with an edge radius and a logarithmic crown: 10 loads, 10 end distances, 10 tilts. The
-program solves a random sample of the contacts with all their frictions and extrapolates from the processor time.
+Usage: ``python -m benchmarks.performance.contact_table [--sample 20] [--workers 0] [--profile]``; ``--sample 1000``
+solves all contacts. A cylindrical roller with an edge radius and a logarithmic crown: 10 loads, 10 end distances, 10
+tilts. The program solves a random sample of the contacts with all their frictions and extrapolates from the processor
+time.
 """
 
 from __future__ import annotations
@@ -40,11 +41,11 @@ FRICTIONS = np.linspace(0.01, 0.1, 10)
 CORES, MINUTES = 2, 10.0
 
 
-def table(contacts: int) -> Study:
+def make_contact_table_study(contacts: int) -> Study:
     """Study of a random sample of the contacts."""
     combinations = np.array(list(itertools.product(LOADS, DISTANCES, TILTS)))
-    selected = np.random.default_rng(1).permutation(combinations)[:contacts]
-    load, distance, tilt = selected.T.tolist()
+    selected_combinations = np.random.default_rng(1).permutation(combinations)[:contacts]
+    load, distance, tilt = selected_combinations.T.tolist()
     return Study(
         name="contact_table",
         level="summary",
@@ -54,7 +55,7 @@ def table(contacts: int) -> Study:
     )
 
 
-def processor_seconds() -> float:
+def measure_processor_seconds() -> float:
     """Processor time of this process and its finished workers."""
     return time.process_time() + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
 
@@ -63,30 +64,39 @@ def main() -> None:
     """Solve the sample and print the extrapolation."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sample", type=int, default=20, help="contacts to solve")
-    parser.add_argument("--workers", type=int, default=0, help="processes; 0: this one")
+    parser.add_argument("--workers", type=int, default=0, help="number of processes; 0: this process")
     parser.add_argument("--profile", action="store_true", help="print the functions with the most processor time")
     options = parser.parse_args()
     os.environ.update(WORKER_ENVIRONMENT)
     with tempfile.TemporaryDirectory() as folder:
         # Imports and plans of transforms are made once per process.
-        run_study(table(1), Path(folder) / "first", workers=0, progress=False)
+        run_study(make_contact_table_study(1), Path(folder) / "first", workers=0, progress=False)
         profile = cProfile.Profile(time.process_time)
-        start_seconds, start_time = processor_seconds(), time.perf_counter()
+        start_seconds, start_time = measure_processor_seconds(), time.perf_counter()
         if options.profile:
             profile.enable()
-        report = run_study(table(options.sample), Path(folder) / "table", workers=options.workers, progress=False)
+        report = run_study(
+            make_contact_table_study(options.sample), Path(folder) / "table", workers=options.workers, progress=False
+        )
         profile.disable()
-        seconds, wall = processor_seconds() - start_seconds, time.perf_counter() - start_time
-        size = sum(path.stat().st_size for path in report.files)
+        seconds, elapsed_seconds = measure_processor_seconds() - start_seconds, time.perf_counter() - start_time
+        bytes_written = sum(path.stat().st_size for path in report.files)
     assert set(report.counts) == {"ok"}, report.counts
-    cases, per_contact = len(report.plan), seconds / options.sample
+    cases, seconds_per_contact = len(report.plan), seconds / options.sample
     contacts = len(LOADS) * len(DISTANCES) * len(TILTS)
-    memory = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / 1e3
+    memory = (
+        max(
+            resource.getrusage(process_kind).ru_maxrss
+            for process_kind in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+        )
+        / 1e3
+    )
     print(
         f"contact table: {options.sample} of {contacts} contacts, {cases} cases in {seconds:.1f} s of processor time, "
-        f"{wall:.1f} s on the clock; {per_contact:.2f} s per contact, {1e3 * seconds / cases:.0f} ms per case; all on "
-        f"{CORES} cores: {contacts * per_contact / CORES / 60:.1f} min (bar {MINUTES:.0f} min); "
-        f"{size / cases:.0f} bytes per case (bar 1000), largest memory {memory:.0f} MB"
+        f"{elapsed_seconds:.1f} s on the clock; {seconds_per_contact:.2f} s per contact, "
+        f"{1e3 * seconds / cases:.0f} ms per case; all on "
+        f"{CORES} cores: {contacts * seconds_per_contact / CORES / 60:.1f} min (bar {MINUTES:.0f} min); "
+        f"{bytes_written / cases:.0f} bytes per case (bar 1000), largest memory {memory:.0f} MB"
     )
     if options.profile:
         pstats.Stats(profile).sort_stats("cumulative").print_stats(80)

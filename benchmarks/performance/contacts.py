@@ -12,79 +12,83 @@ from benchmarks.performance.peers import (
     OURS,
     SETTINGS,
     Solver,
-    available,
-    contact_of,
-    quietly,
+    ignore_warnings,
+    load_codes,
     solve_ours,
+    solve_peer_contact,
 )
 from benchmarks.performance.problems import FloatArray, Problem, roller, sphere
-from benchmarks.performance.timing import Report, Row, medians, named, show
+from benchmarks.performance.timing import Report, Row, compute_medians, format_time, join_times
 from contactstudy import solve_contact
 from contactstudy.contact import ContactSettings
 
-GOAL = 1e-6
+ERROR_BOUND = 1e-6
 ROLLER_CELLS, ROLLER_WINDOW = (512, 64), 40.0
 PEERS = ("aspher", "tamaas", "ContactMechanics", "plain SciPy")
 
 
-def difference(pressure: FloatArray, limit: FloatArray) -> float:
-    """Sum of the pressure's deviations over the sum of the pressure."""
-    return float(np.abs(pressure - limit).sum() / limit.sum())
+def compute_relative_difference(pressure: FloatArray, converged_pressure: FloatArray) -> float:
+    """Sum of the absolute differences of two pressures over the sum of the converged pressure."""
+    return float(np.abs(pressure - converged_pressure).sum() / converged_pressure.sum())
 
 
-def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tuple[float, float]:
+def find_loosest_setting(solve: Solver, problem: Problem, goal: float = ERROR_BOUND) -> tuple[float, float]:
     """Loosest tolerance with an error below `goal` relative to the code's limit, and this error.
 
     Parameters
     ----------
     solve : callable
-        The code.
+        Contact code.
     problem : Problem
-        Problem.
+        Solved contact.
     goal : float
-        Allowed difference from the code's own answer at its tightest setting.
+        Allowed difference from the code's pressure at its tightest setting.
 
     Raises
     ------
     RuntimeError
         If no setting is tight enough.
     """
-    limit = solve(problem, LIMIT_SETTING)
+    converged_pressure = solve(problem, LIMIT_SETTING)
     errors: dict[int, float] = {}
 
-    def error(index: int) -> float:
-        if index not in errors:
-            errors[index] = difference(solve(problem, SETTINGS[index]), limit)
-        return errors[index]
+    def error(setting_index: int) -> float:
+        if setting_index not in errors:
+            errors[setting_index] = compute_relative_difference(
+                solve(problem, SETTINGS[setting_index]), converged_pressure
+            )
+        return errors[setting_index]
 
-    index = SETTINGS.index(min(SETTINGS, key=lambda setting: abs(np.log10(setting / goal))))
-    while index < len(SETTINGS) - 1 and error(index) > goal:
-        index += 1
-    while index > 0 and error(index - 1) <= goal:
-        index -= 1
-    if error(index) > goal:
+    setting_index = SETTINGS.index(min(SETTINGS, key=lambda setting: abs(np.log10(setting / goal))))
+    while setting_index < len(SETTINGS) - 1 and error(setting_index) > goal:
+        setting_index += 1
+    while setting_index > 0 and error(setting_index - 1) <= goal:
+        setting_index -= 1
+    if error(setting_index) > goal:
         raise RuntimeError(f"no setting comes within {goal:g} of the limit")
-    return SETTINGS[index], error(index)
+    return SETTINGS[setting_index], error(setting_index)
 
 
 def compare(problem: Problem, names: tuple[str, ...], repeats: int, report: Report) -> tuple[dict[str, float], str]:
     """Median seconds of each code at equal measured accuracy, and a note on its settings."""
-    works: dict[str, Callable[[], object]] = {}
+    timed_functions: dict[str, Callable[[], object]] = {}
     notes = []
-    limits: dict[str, FloatArray] = {}
-    for name, solve in available(names, report.add_remark):
-        with quietly():
+    converged_pressures: dict[str, FloatArray] = {}
+    for name, solve in load_codes(names, report.add_remark):
+        with ignore_warnings():
             try:
-                setting, error = loosest_setting(solve, problem)
+                setting, error = find_loosest_setting(solve, problem)
             except RuntimeError as reason:
                 report.add_remark(f"{name} is skipped for {problem.gap.shape} cells: {reason}")
                 continue
-            limits[name] = solve(problem, setting)
-        works[name] = partial(solve, problem, setting)
+            converged_pressures[name] = solve(problem, setting)
+        timed_functions[name] = partial(solve, problem, setting)
         notes.append(f"{name} {error:.0e} at {setting:.0e}")
-    with quietly():
-        seconds = medians(works, repeats, warm_up=False)
-    max_difference = max(difference(pressure, limits[OURS]) for pressure in limits.values())
+    with ignore_warnings():
+        seconds = compute_medians(timed_functions, repeats, warm_up=False)
+    max_difference = max(
+        compute_relative_difference(pressure, converged_pressures[OURS]) for pressure in converged_pressures.values()
+    )
     return seconds, f"measured error at setting: {', '.join(notes)}; codes agree within {max_difference:.0e}"
 
 
@@ -94,12 +98,12 @@ def point_contact(repeats: int, report: Report) -> Iterator[Row]:
         problem = sphere(cells)
         seconds, note = compare(problem, PEERS, repeats if cells < 512 else min(repeats, 3), report)
         our_seconds = seconds.pop(OURS)
-        iterations = float(contact_of(problem)["iterations"])
+        iterations = float(solve_peer_contact(problem)["iterations"])
         fastest_peer = seconds.get("aspher")
         yield Row(
             work=f"half-space point contact {cells}²",
-            ours=show(our_seconds),
-            peers=named(seconds),
+            ours=format_time(our_seconds),
+            peers=join_times(seconds),
             ratio=", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
             bar="no slower than aspher",
             met=None if fastest_peer is None else our_seconds <= fastest_peer,
@@ -115,8 +119,8 @@ def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
     our_seconds = seconds.pop(OURS)
     yield Row(
         work="half-space roller 512 x 64",
-        ours=show(our_seconds),
-        peers=named(seconds),
+        ours=format_time(our_seconds),
+        peers=join_times(seconds),
         ratio=", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
         bar="0.15 s",
         met=our_seconds <= 0.15,
@@ -129,25 +133,27 @@ def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
     bar = 2.0
     half_space = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
     for overhang, label in ((2.0, "ends 2a inside the body's"), (0.0, "roller as long as the body")):
-        with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
-        works: dict[str, Callable[[], object]] = {
-            "finite": partial(contact_of, with_ends),
-            "built": partial(contact_of, half_space),
+        roller_with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
+        timed_functions: dict[str, Callable[[], object]] = {
+            "finite": partial(solve_peer_contact, roller_with_ends),
+            "built": partial(solve_peer_contact, half_space),
             "cold": partial(solve_ours, half_space, 1e-6),
         }
-        seconds = medians(works, repeats)
-        count = {
-            name: int(contact_of(problem)["iterations"]) for name, problem in (("f", with_ends), ("h", half_space))
+        seconds = compute_medians(timed_functions, repeats)
+        application_counts = {
+            name: int(solve_peer_contact(problem)["iterations"])
+            for name, problem in (("f", roller_with_ends), ("h", half_space))
         }
         ratio = seconds["finite"] / seconds["built"]
         yield Row(
             work=f"finite-length contact 512 x 64, built; {label}",
-            ours=show(seconds["finite"]),
-            peers=f"our half-space: {show(seconds['built'])} built, {show(seconds['cold'])} cold",
+            ours=format_time(seconds["finite"]),
+            peers=f"our half-space: {format_time(seconds['built'])} built, {format_time(seconds['cold'])} cold",
             ratio=f"{ratio:.2f}, {seconds['finite'] / seconds['cold']:.2f}",
             bar=f"{bar:g}x the half-space",
             met=ratio <= bar,
-            notes=f"all at the default 1e-6; operator applications {count['f']}, half-space {count['h']}",
+            notes=f"all at the default 1e-6; operator applications {application_counts['f']}, "
+            f"half-space {application_counts['h']}",
         )
 
 
@@ -163,7 +169,7 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
         counts = []
         for name, problem in cases.items():
             contact = solve_contact(
-                problem.body, problem.gap_array(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
+                problem.body, problem.make_gap_array(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
             )
             if not bool(contact["converged"]):
                 report.add_remark(f"not converged: {name} at {tolerance:g}")

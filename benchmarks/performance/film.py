@@ -1,4 +1,5 @@
-"""Rows of the lubricating film: a real roller between free ends against a half-space, and at the next speeds."""
+"""Rows of the lubricating film: a roller with a logarithmic profile between free ends and on a half-space, and at
+nearby speeds."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.performance.problems import STEEL
-from benchmarks.performance.timing import Report, Row, show
+from benchmarks.performance.timing import Report, Row, format_time
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, Lubricant, Roller, Sliding, cache
 from contactstudy.checks import FloatArray
 from contactstudy.film import solve_film
@@ -19,8 +20,8 @@ from contactstudy.profiles import Lundberg, Shape
 RADIUS, LENGTH, HALF_WIDTH = 5e-3, 10e-3, 65e-6
 MOES_LOAD, MOES_LUBRICANT = 20.0, 10.0
 SPEED = 1.0
-NEXT_SPEED = (0.8, 1.25)
-"""Next speeds over the first."""
+SPEED_FACTORS = (0.8, 1.25)
+"""Ratios of the nearby speeds to `SPEED`."""
 
 SPEEDS = (8.0, 2.0, 0.3)
 """Speeds of a crowned roller, m/s: the table of docs/explanation/film.md."""
@@ -39,7 +40,7 @@ class LogarithmicDrop(Shape):
         return np.asarray(-self.amplitude * np.log(1 - 0.998 * (2 * x / length) ** 2))
 
 
-def roller_case(speed: float, *, free_ends: bool) -> Case:
+def make_roller_case(speed: float, *, free_ends: bool) -> Case:
     """A rigid roller on a flush steel body, or on a half-space, in an oil with the numbers M and L at `SPEED`."""
     modulus = STEEL.plane_strain_modulus
     pressure = modulus * HALF_WIDTH / (2 * RADIUS)
@@ -57,7 +58,7 @@ def roller_case(speed: float, *, free_ends: bool) -> Case:
     )
 
 
-def crowned_case(speed: float) -> Case:
+def make_crowned_case(speed: float) -> Case:
     """A rigid roller with Lundberg's crown for 1 GPa on a flush steel body, in an oil of VG 220 at 70 C."""
     crown = Lundberg.for_pressure(1e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     return Case(
@@ -71,7 +72,7 @@ def crowned_case(speed: float) -> Case:
     )
 
 
-def timed_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.Dataset]:
+def time_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.Dataset]:
     """Seconds of a film and the film."""
     start_time = time.perf_counter()
     film = solve_film(case, accuracy=ACCURACY, start=start)
@@ -79,42 +80,42 @@ def timed_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.D
 
 
 def films(_: int, report: Report) -> Iterator[Row]:
-    """Films from the dry contact, once each: operators that an earlier film has kept serve the next."""
-    seconds, film = timed_film(roller_case(SPEED, free_ends=True))
-    on_half_space, half_space = timed_film(roller_case(SPEED, free_ends=False))
+    """Films from the dry contact, solved once each; later films reuse the operators of earlier films."""
+    seconds, film = time_film(make_roller_case(SPEED, free_ends=True))
+    half_space_seconds, half_space_film = time_film(make_roller_case(SPEED, free_ends=False))
     min_film, error = 1e9 * float(film["least_film"]), 1e9 * float(film["least_film_error"])
-    least_half_space = 1e9 * float(half_space["least_film"])
+    half_space_min_film = 1e9 * float(half_space_film["least_film"])
     if error > ACCURACY * 1e9 * float(film["central_film"]):
         report.add_remark("the least film has not converged to 2 % of the central film")
     yield Row(
         work=f"film of a rigid roller, 10 mm, M = {MOES_LOAD:g}, L = {MOES_LUBRICANT:g}",
-        ours=show(seconds),
-        peers=f"half-space: {show(on_half_space)}",
-        ratio=f"{seconds / on_half_space:.2f}",
+        ours=format_time(seconds),
+        peers=f"half-space: {format_time(half_space_seconds)}",
+        ratio=f"{seconds / half_space_seconds:.2f}",
         bar="20 s; 2",
-        met=seconds <= 20 and seconds <= 2 * on_half_space,
-        notes=f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
+        met=seconds <= 20 and seconds <= 2 * half_space_seconds,
+        notes=f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {half_space_min_film:.1f} nm",
     )
-    for factor in NEXT_SPEED:
-        next_seconds, _film = timed_film(roller_case(factor * SPEED, free_ends=True), start=film)
+    for factor in SPEED_FACTORS:
+        next_seconds, _film = time_film(make_roller_case(factor * SPEED, free_ends=True), start=film)
         yield Row(
             work=f"film at {factor:g} of the speed",
-            ours=show(next_seconds),
-            peers=f"first speed: {show(seconds)}",
+            ours=format_time(next_seconds),
+            peers=f"first speed: {format_time(seconds)}",
             ratio=f"{next_seconds / seconds:.2f}",
             bar="0.25",
             met=next_seconds <= 0.25 * seconds,
         )
     for speed in SPEEDS:
         cache.clear()
-        seconds, film = timed_film(crowned_case(speed))
+        seconds, film = time_film(make_crowned_case(speed))
         central, least = (
             f"{1e9 * float(film[name]):.1f} +- {1e9 * float(film[f'{name}_error']):.1f} nm"
             for name in ("central_film", "least_film")
         )
         yield Row(
             work=f"film of a crowned roller, 10 mm, VG 220 at 70 C, {speed:g} m/s",
-            ours=show(seconds),
+            ours=format_time(seconds),
             notes=f"M = {float(film['moes_load']):.1f}, L = {float(film['moes_lubricant']):.0f}, "
             f"central film {central}, least film {least}, "
             f"{int(film['newton_steps'])} Newton and {int(film['linear_steps'])} GMRES steps",

@@ -1,6 +1,6 @@
 """Peak memory of one long roller: prints megabytes after the imports, after the contact and after the stresses.
 
-Run on its own, ``python -m benchmarks.performance.memory``, because a peak counts for a whole process.
+``python -m benchmarks.performance.memory`` runs in a process of its own, because the peak is that of a process.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.performance.peers import contact_of
+from benchmarks.performance.peers import solve_peer_contact
 from benchmarks.performance.problems import HALF_WIDTH, roller
 from contactstudy import stress_field
 
 
-def peak() -> float:
-    """Return the largest memory that the process has taken so far, megabytes."""
+def measure_peak_memory() -> float:
+    """Return the peak memory of the process so far, megabytes."""
     status = Path("/proc/self/status")
-    if status.exists():  # the other figure begins with that of the process that started this one
+    if status.exists():  # `ru_maxrss` includes the memory of the parent process
         line = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM"))
         return float(line.split()[1]) * 1024 / 1e6
     unit = 1 if sys.platform == "darwin" else 1024
@@ -27,14 +27,14 @@ def peak() -> float:
 
 
 def main() -> None:
-    """Build, solve, look at one section, and print the peak after each."""
-    peaks = [peak()]
+    """Solve the contact and the stresses of one section, and print the peak after each step."""
+    peaks = [measure_peak_memory()]
     problem = roller((1000, 48), 100.0, free_ends=True)
-    contact = contact_of(problem)
-    peaks.append(peak())
+    contact = solve_peer_contact(problem)
+    peaks.append(measure_peak_memory())
     depths, pressure = np.linspace(0.0, 5 * HALF_WIDTH, 25), contact["pressure"]
     stress_field(problem.body, pressure, y=[0.0], z=depths, inside_cells=pressure)
-    peaks.append(peak())
+    peaks.append(measure_peak_memory())
     print(*(f"{value:.1f}" for value in peaks))
 
 

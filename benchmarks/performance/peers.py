@@ -1,4 +1,4 @@
-"""The codes that are compared, each behind one call: pressure of a problem at a tolerance."""
+"""The compared codes as functions of one signature: pressure of a problem at a tolerance."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from contactstudy.contact import ContactSettings
 Solver = Callable[[Problem, float], FloatArray]
 
 OURS = "ours"
-SETTINGS = tuple(first * 10.0**power for power in range(-4, -10, -1) for first in (1.0, 0.3))
+SETTINGS = tuple(factor * 10.0**power for power in range(-4, -10, -1) for factor in (1.0, 0.3))
 LIMIT_SETTING = 1e-10
 
 
 def solve_ours(problem: Problem, tolerance: float) -> FloatArray:
     """Pressure by this package, with an empty cache."""
-    return np.asarray(contact_of(problem, tolerance, stretch=nudge())["pressure"].values)
+    return np.asarray(solve_peer_contact(problem, tolerance, stretch=nudge())["pressure"].values)
 
 
-def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.0) -> xr.Dataset:
-    """Contact by this package, which never repeats a load; with the same `stretch` the operator is kept."""
+def solve_peer_contact(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.0) -> xr.Dataset:
+    """Contact by this package under a load that no earlier contact has; the operator of a `stretch` is reused."""
     return solve_contact(
         problem.body,
-        problem.gap_array(stretch),
-        load=problem.nudged_load(),
+        problem.make_gap_array(stretch),
+        load=problem.compute_changed_load(),
         settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
     )
 
@@ -43,12 +43,12 @@ def _aspher() -> Solver:
 
     def solve(problem: Problem, tolerance: float) -> FloatArray:
         cells = problem.gap.shape[0]
-        side = problem.size[0]
+        side_length = problem.size[0]
         result = aspher.solve_nested(
             grid_size=cells,
             gap=problem.gap.ravel(),
-            p_nominal=problem.load / side**2,
-            domain_size=side,
+            p_nominal=problem.load / side_length**2,
+            domain_size=side_length,
             E_star=problem.contact_modulus,
             tol=tolerance,
             backend="fft",
@@ -101,31 +101,31 @@ def _contact_mechanics() -> Solver:
             )
         if not result.success:
             raise RuntimeError(str(result.message))
-        cell = problem.size[0] * problem.size[1] / problem.gap.size
-        return np.asarray(result.jac)[: shape[0], : shape[1]] / cell
+        cell_area = problem.size[0] * problem.size[1] / problem.gap.size
+        return np.asarray(result.jac)[: shape[0], : shape[1]] / cell_area
 
     return solve
 
 
-_MAKERS = {"aspher": _aspher, "tamaas": _tamaas, "ContactMechanics": _contact_mechanics}
+SOLVER_FACTORIES = {"aspher": _aspher, "tamaas": _tamaas, "ContactMechanics": _contact_mechanics}
 
 
-def available(names: tuple[str, ...], remark: Callable[[str], None]) -> Iterator[tuple[str, Solver]]:
-    """Yield this package and those of the named codes that can be loaded; `remark` gets the reason for the others."""
+def load_codes(names: tuple[str, ...], remark: Callable[[str], None]) -> Iterator[tuple[str, Solver]]:
+    """Yield this package and the installed codes; pass the reason for each missing code to `remark`."""
     yield OURS, solve_ours
     for name in names:
         if name == "plain SciPy":
             yield name, solve_classic
             continue
         try:
-            yield name, _MAKERS[name]()
+            yield name, SOLVER_FACTORIES[name]()
         except ImportError as error:
             remark(f"{name} is skipped: {error}")
 
 
 @contextmanager
-def quietly() -> Iterator[None]:
-    """Leave out warnings of codes whose tolerance is below their rounding."""
+def ignore_warnings() -> Iterator[None]:
+    """Suppress the warnings of codes at tolerances below their rounding errors."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

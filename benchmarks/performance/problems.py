@@ -17,13 +17,13 @@ FloatArray = npt.NDArray[np.float64]
 STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 1e-4
 RADIUS = 8e-3
-# Where a roller cannot touch, peers get a gap of this many times the largest finite one.
+# Peers get this multiple of the largest finite gap where the gap is infinite.
 DISTANT_GAP = 10.0
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A rigid shape over a grid of cells, and the load that presses it down.
+    """A rigid roller or sphere over a grid of cells, and its load.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Problem:
     size : tuple
         Window along x and y, metres.
     load : float
-        Newton.
+        Load, newtons.
     """
 
     body: Body
@@ -50,18 +50,18 @@ class Problem:
     @property
     def finite_gap(self) -> FloatArray:
         """Gap for codes without infinite gaps."""
-        finite = np.isfinite(self.gap)
-        return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
+        is_finite = np.isfinite(self.gap)
+        return np.where(is_finite, self.gap, DISTANT_GAP * self.gap[is_finite].max())
 
-    def gap_array(self, stretch: float = 1.0) -> xr.DataArray:
-        """Gap with its coordinates; a stretch next to 1 makes a grid for which no operator is kept."""
+    def make_gap_array(self, stretch: float = 1.0) -> xr.DataArray:
+        """Gap with its coordinates; another `stretch` makes a grid whose operator is not cached."""
         cells_x, cells_y = self.gap.shape
         x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch
         y = (np.arange(cells_y) + 0.5 - cells_y / 2) * self.size[1] / cells_y * stretch
         return xr.DataArray(self.gap, coords={"x": x, "y": y}, dims=("x", "y"))
 
-    def nudged_load(self) -> float:
-        """Load that differs from every earlier one in its last digits."""
+    def compute_changed_load(self) -> float:
+        """Load that differs from every earlier load in its last digits."""
         return self.load * nudge()
 
 
@@ -103,5 +103,5 @@ def roller(cells: tuple[int, int], length: float, *, free_ends: bool, overhang: 
     body: Body = HalfSpace(material=STEEL)
     if free_ends:
         body = FiniteLengthSpace(length=size_x, material=STEEL)
-    per_length = np.pi * HALF_WIDTH**2 * STEEL.young / (1 - STEEL.poisson**2) / (4 * RADIUS)
-    return Problem(body, gap, (size_x, size_y), per_length * roller_length)
+    load_per_length = np.pi * HALF_WIDTH**2 * STEEL.young / (1 - STEEL.poisson**2) / (4 * RADIUS)
+    return Problem(body, gap, (size_x, size_y), load_per_length * roller_length)

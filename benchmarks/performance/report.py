@@ -12,7 +12,7 @@ from pathlib import Path
 from benchmarks.performance import bodies, contacts, film, refinement, rolling
 from benchmarks.performance.timing import Report, Row
 
-PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
+BENCHMARKS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
     "point": contacts.point_contact,
     "roller": contacts.half_space_roller,
     "finite": contacts.finite_length_roller,
@@ -27,31 +27,33 @@ PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
 VERSIONS = ("contactstudy", "numpy", "scipy", "pyfftw", "aspher", "tamaas", "ContactMechanics")
 
 
-def versions() -> str:
-    """Return the compared rows."""
-    reports = []
+def describe_versions() -> str:
+    """Return the versions of Python and of the compared codes."""
+    version_texts = []
     for name in VERSIONS:
         try:
-            reports.append(f"{name} {metadata.version(name)}")
+            version_texts.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
-            reports.append(f"{name} absent")
-    return f"Python {platform.python_version()}, {', '.join(reports)}; one thread"
+            version_texts.append(f"{name} absent")
+    return f"Python {platform.python_version()}, {', '.join(version_texts)}; one thread"
 
 
 def main() -> None:
-    """Run the selected parts, print each row, and then the table."""
+    """Run the selected benchmarks; print each row, and the table at the end."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.performance", description=__doc__)
-    parser.add_argument("--repeats", type=int, default=5, help="rounds behind each median")
-    parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS), help="parts to run")
+    parser.add_argument("--repeats", type=int, default=5, help="rounds of each median")
+    parser.add_argument("--only", nargs="+", choices=BENCHMARKS, default=list(BENCHMARKS), help="benchmarks to run")
     parser.add_argument("--markdown", type=Path, help="file to write the table to")
     arguments = parser.parse_args()
-    started = time.perf_counter()
+    start_time = time.perf_counter()
     report = Report()
     for name in arguments.only:
-        for row in PARTS[name](max(1, arguments.repeats), report):
+        for row in BENCHMARKS[name](max(1, arguments.repeats), report):
             report.rows.append(row)
             print(row.plain(), flush=True)
-    report.add_remark(f"{versions()}; medians of {arguments.repeats}; {time.perf_counter() - started:.0f} s in all")
+    report.add_remark(
+        f"{describe_versions()}; medians of {arguments.repeats}; {time.perf_counter() - start_time:.0f} s in all"
+    )
     print("\n" + report.markdown())
     if arguments.markdown:
         arguments.markdown.write_text(report.markdown() + "\n", encoding="utf-8")

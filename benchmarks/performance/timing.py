@@ -1,4 +1,4 @@
-"""Medians of interleaved runs, and the table that they end in."""
+"""Medians of interleaved runs, and the table of the results."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-# A relative change of an input that no cache can serve and no result can show.
+# Relative change of an input that avoids cached results, below the accuracy of any result.
 NUDGE = 1e-13
 
 COLUMNS = ("work", "ours", "peers", "ours / peers", "bar", "met", "notes")
 
 
 class Nudge:
-    """Factors next to 1, each a new one, so that no repetition is served from a cache of results."""
+    """Factors near 1, all different, so that repeated runs do not use cached results."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -58,7 +58,7 @@ class Report:
     remarks: list[str] = field(default_factory=list)
 
     def add_remark(self, text: str) -> None:
-        """Keep a remark once."""
+        """Add a remark unless the report contains it."""
         if text not in self.remarks:
             self.remarks.append(text)
 
@@ -69,8 +69,10 @@ class Report:
         return "\n".join(lines + [""] + [f"* {remark}" for remark in self.remarks])
 
 
-def medians(works: Mapping[str, Callable[[], object]], repeats: int, *, warm_up: bool = True) -> dict[str, float]:
-    """Median seconds of each work; the works take turns, so that a busy machine slows all of them alike.
+def compute_medians(
+    functions: Mapping[str, Callable[[], object]], repeats: int, *, warm_up: bool = True
+) -> dict[str, float]:
+    """Median seconds of each function; the functions take turns, so the load of the machine affects all equally.
 
     Parameters
     ----------
@@ -79,25 +81,25 @@ def medians(works: Mapping[str, Callable[[], object]], repeats: int, *, warm_up:
     repeats : int
         Rounds.
     warm_up : bool
-        Whether each work runs once untimed before.
+        Whether each function runs once before, untimed.
     """
     if warm_up:
-        for work in works.values():
-            work()
-    seconds: dict[str, list[float]] = {name: [] for name in works}
+        for function in functions.values():
+            function()
+    seconds: dict[str, list[float]] = {name: [] for name in functions}
     for _ in range(repeats):
-        for name, work in works.items():
+        for name, function in functions.items():
             start = time.perf_counter()
-            work()
+            function()
             seconds[name].append(time.perf_counter() - start)
     return {name: statistics.median(duration) for name, duration in seconds.items()}
 
 
-def named(seconds: Mapping[str, float]) -> str:
+def join_times(seconds: Mapping[str, float]) -> str:
     """Return times by name in one cell."""
-    return ", ".join(f"{name} {show(duration)}" for name, duration in seconds.items())
+    return ", ".join(f"{name} {format_time(duration)}" for name, duration in seconds.items())
 
 
-def show(seconds: float) -> str:
+def format_time(seconds: float) -> str:
     """Return a time with its unit, to two or three digits."""
     return f"{seconds:.3f} s" if seconds < 1 else f"{seconds:.3g} s"

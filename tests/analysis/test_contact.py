@@ -1,4 +1,4 @@
-"""Contact results: small tables by hand, Hertz' line contact, the cases of a study, the real solver."""
+"""Contact results: tables computed by hand, Hertz' line contact, the cases of a study, a solved contact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from contactstudy.analysis.axial import contact_borders
 from tests.stand_in_solver import FAILS
 
 
-def contact(values: list[list[float]]) -> xr.Dataset:
+def contact_of(values: list[list[float]]) -> xr.Dataset:
     array = np.asarray(values, dtype=float)
     cells = {"x": 0.5 + np.arange(array.shape[0]), "y": np.arange(array.shape[1]) - (array.shape[1] - 1) / 2}
     return xr.Dataset({"pressure": (("x", "y"), array)}, coords=cells)
@@ -23,7 +23,7 @@ PRESSURE_VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
 def test_axial_profiles_equal_manual_reduction() -> None:
-    profiles = analysis.axial_profiles(contact(PRESSURE_VALUES))
+    profiles = analysis.axial_profiles(contact_of(PRESSURE_VALUES))
     assert profiles["axial_pressure"].values.tolist() == [0, 1, 3, 4, 0]
     assert profiles["line_load"].values.tolist() == [0, 1, 7, 5, 0]
     assert profiles["half_width"].values.tolist() == [0, 0.5, 1.5, 1, 0]
@@ -34,8 +34,8 @@ def test_axial_profiles_equal_manual_reduction() -> None:
     ("start", "stop", "expected"),
     [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0)],
 )
-def test_load_between(start: float, stop: float, expected: float) -> None:
-    load = analysis.load_between(contact(PRESSURE_VALUES), start, stop)
+def test_load_between_positions_equals_sum_of_cells(start: float, stop: float, expected: float) -> None:
+    load = analysis.load_between(contact_of(PRESSURE_VALUES), start, stop)
     assert float(load) == pytest.approx(expected)
     assert load.attrs["units"] == "N"
 
@@ -49,23 +49,25 @@ def test_load_between(start: float, stop: float, expected: float) -> None:
         ([0, 1], [1, 2], r"start = \[0, 1\]: must be a number"),
     ],
 )
-def test_interval_outside_the_cells(start, stop, message: str) -> None:
+def test_invalid_interval_raises(start, stop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        analysis.load_between(contact(PRESSURE_VALUES), start, stop)
+        analysis.load_between(contact_of(PRESSURE_VALUES), start, stop)
 
 
-def test_contact_results_of_normalized_data() -> None:
-    normalized = analysis.normalized(contact(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
+def test_normalized_data_and_single_row_raise() -> None:
+    normalized_result = analysis.normalized(
+        contact_of(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0)
+    )
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
-        analysis.line_load(normalized)
+        analysis.line_load(normalized_result)
     with pytest.raises(InvalidInputError, match="two positions along y or more"):
-        analysis.line_load(contact(PRESSURE_VALUES).isel(y=[1]))
+        analysis.line_load(contact_of(PRESSURE_VALUES).isel(y=[1]))
     with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
-        analysis.largest_sample(contact(PRESSURE_VALUES), 5)  # type: ignore[arg-type]
+        analysis.largest_sample(contact_of(PRESSURE_VALUES), 5)  # type: ignore[arg-type]
 
 
-def test_scalars_by_hand() -> None:
-    result = analysis.contact_results(contact(PRESSURE_VALUES))
+def test_contact_results_equal_values_by_hand() -> None:
+    result = analysis.contact_results(contact_of(PRESSURE_VALUES))
     expected = {
         "peak_pressure": 4,
         "peak_pressure_x": 3.5,
@@ -84,12 +86,12 @@ def test_scalars_by_hand() -> None:
 
 
 @given(about=st.floats(-10, 10))
-def test_moment_about_another_point(about: float) -> None:
-    result = analysis.contact_results(contact(PRESSURE_VALUES), about)
+def test_moment_depends_on_reference_point(about: float) -> None:
+    result = analysis.contact_results(contact_of(PRESSURE_VALUES), about)
     assert float(result["moment"]) == pytest.approx(4 - 13 * (about - 2.5), abs=1e-9)
 
 
-def test_contact_length_loss(strip_result) -> None:
+def test_contact_length_loss_of_half_contact_is_one(strip_result) -> None:
     result = strip_result()
     assert float(analysis.contact_results(result)["contact_length_loss"]) == pytest.approx(0, abs=1e-12)
     partial_contact = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
@@ -98,7 +100,7 @@ def test_contact_length_loss(strip_result) -> None:
 
 
 @given(half_width=st.floats(0.4, 1.9), centre=st.floats(-0.3, 0.3))
-def test_border_of_a_hertz_pressure(half_width: float, centre: float) -> None:
+def test_borders_of_hertz_pressure_equal_half_width(half_width: float, centre: float) -> None:
     positions = (np.arange(80) - 39.5) / 16
     pressure = np.sqrt(np.maximum(1 - ((positions - centre) / half_width) ** 2, 0))
     first_border, last_border = contact_borders(pressure, positions)
@@ -110,60 +112,60 @@ def test_border_of_a_hertz_pressure(half_width: float, centre: float) -> None:
 def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
     result = strip_result(half_width=2e-4, max_pressure=1e9)
     profiles = analysis.axial_profiles(result)
-    loaded = profiles.isel(x=np.flatnonzero(profiles["line_load"] > 0))
-    assert loaded["half_width"].values == pytest.approx(2e-4, rel=1e-9)
-    assert loaded["line_load"].values == pytest.approx(np.pi / 2 * 2e-4 * 1e9, rel=2e-3)
+    loaded_profiles = profiles.isel(x=np.flatnonzero(profiles["line_load"] > 0))
+    assert loaded_profiles["half_width"].values == pytest.approx(2e-4, rel=1e-9)
+    assert loaded_profiles["line_load"].values == pytest.approx(np.pi / 2 * 2e-4 * 1e9, rel=2e-3)
     assert profiles["unloaded_gap"].isnull().values.tolist() == (profiles["line_load"] == 0).values.tolist()
 
 
-def test_real_contact(case_result: xr.Dataset) -> None:
+def test_solved_contact_is_balanced_and_has_hertz_half_width(case_result: xr.Dataset) -> None:
     result = analysis.contact_results(case_result)
     assert float(result["resultant"]) == pytest.approx(float(case_result["normal_load"]), rel=1e-9)
     assert abs(float(result["moment"])) < 1e-6 * float(case_result["normal_load"]) * 0.5e-3
     half_width = analysis.half_width(case_result)["half_width"].sel(x=0.26e-3, method="nearest")
     line_load = analysis.line_load(case_result).sel(x=0.26e-3, method="nearest")
     # The half-width is Hertz' half-width for the load of the section, to a fraction of a cell (a/12).
-    hertz = float(case_result["hertz_half_width"]) * np.sqrt(
+    hertz_half_width = float(case_result["hertz_half_width"]) * np.sqrt(
         float(line_load) / (np.pi / 2 * float(case_result["hertz_half_width"] * case_result["hertz_max_pressure"]))
     )
-    assert float(half_width) == pytest.approx(hertz, rel=0.03)
+    assert float(half_width) == pytest.approx(hertz_half_width, rel=0.03)
 
 
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     study_results = analysis.contact_results(study_dataset)
     assert study_results["contact_area"].dims == ("e_over_a", "friction", "body")
-    for e in (0.0, 2.0):
-        selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+    for e_over_a in (0.0, 2.0):
+        selected_case = {"e_over_a": e_over_a, "friction": 0.1, "body": "finite-length"}
         case_result = analysis.contact_results(analysis.single_case(study_dataset.sel(selected_case)))
         for name, value in case_result.items():
             assert float(study_results[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), (
                 name
             )
-        profile = analysis.half_width(study_dataset.sel(selected_case))["half_width"].dropna("x_over_a")
-        case_value = analysis.half_width(analysis.single_case(study_dataset.sel(selected_case)))["half_width"]
-        assert np.array_equal(profile.values, case_value.values)
+        study_half_width = analysis.half_width(study_dataset.sel(selected_case))["half_width"].dropna("x_over_a")
+        case_half_width = analysis.half_width(analysis.single_case(study_dataset.sel(selected_case)))["half_width"]
+        assert np.array_equal(study_half_width.values, case_half_width.values)
     assert study_results.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_load_between_in_a_study(study_dataset: xr.Dataset) -> None:
+def test_load_between_in_study_equals_case_load(study_dataset: xr.Dataset) -> None:
     start = study_dataset["e_over_a"] * study_dataset["hertz_half_width"]
     stop = start + 2 * study_dataset["hertz_half_width"]
     study_loads = analysis.load_between(study_dataset, start, stop)
     assert study_loads.dims == ("e_over_a", "friction", "body")
-    for e in (0.0, 2.0):
-        selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+    for e_over_a in (0.0, 2.0):
+        selected_case = {"e_over_a": e_over_a, "friction": 0.1, "body": "finite-length"}
         selected_result = analysis.single_case(study_dataset.sel(selected_case))
         load = analysis.load_between(selected_result, float(start.sel(selected_case)), float(stop.sel(selected_case)))
         assert float(study_loads.sel(selected_case)) == pytest.approx(float(load), rel=1e-12)
     assert study_loads.sel(friction=FAILS).isnull().all()
 
 
-def test_lazy_surfaces(study_dataset: xr.Dataset) -> None:
+def test_half_width_of_lazy_surface_is_lazy(study_dataset: xr.Dataset) -> None:
     assert analysis.axial_profiles(study_dataset.chunk())["half_width"].chunks is not None
 
 
-def test_results_without_contact() -> None:
-    result = analysis.contact_results(contact([[0, 0], [0, 0]]))
+def test_results_without_contact_are_zero_or_nan() -> None:
+    result = analysis.contact_results(contact_of([[0, 0], [0, 0]]))
     assert float(result["contact_length"]) == float(result["contact_area"]) == 0
     assert np.isnan(float(result["edge_pressure_first"]))
     assert np.isnan(float(result["load_position"]))
@@ -184,20 +186,20 @@ def test_results_without_contact() -> None:
         lambda dataset: analysis.load_between(dataset, 0.0, 1.0),
     ],
 )
-def test_missing_variables(function) -> None:
+def test_missing_variable_raises(function) -> None:
     with pytest.raises(InvalidInputError, match=r"(pressure|initial_gap) is missing"):
         function(xr.Dataset({"normal_load": 1.0}))
     with pytest.raises(InvalidInputError, match="Dataset"):
         function(np.zeros(3))
 
 
-def test_moment_about_nan() -> None:
+def test_moment_about_nan_raises() -> None:
     with pytest.raises(InvalidInputError, match="about"):
-        analysis.contact_results(contact(PRESSURE_VALUES), np.nan)
+        analysis.contact_results(contact_of(PRESSURE_VALUES), np.nan)
 
 
 @pytest.mark.parametrize(
-    ("y_slice", "first", "last"),
+    ("x_slice", "first", "last"),
     [
         (slice(None), 1.0, 4.0),
         (slice(2, None), np.nan, 4.0),
@@ -205,25 +207,25 @@ def test_moment_about_nan() -> None:
         (slice(2, 3), np.nan, np.nan),
     ],
 )
-def test_cut_ends(y_slice: slice, first: float, last: float) -> None:
+def test_edge_pressure_of_cut_end_is_nan(x_slice: slice, first: float, last: float) -> None:
     # A sufficient window has unloaded rows on either side along y.
     full_contact = (
-        contact(PRESSURE_VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
+        contact_of(PRESSURE_VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
     )
     full_contact = full_contact.reset_coords("normal_load").assign(hertz_half_width=1.0)
-    selected = full_contact.isel(x=y_slice).assign_coords(x_width=1.0)
-    end_pressures = analysis.edge_pressure(selected)
+    selected_contact = full_contact.isel(x=x_slice).assign_coords(x_width=1.0)
+    end_pressures = analysis.edge_pressure(selected_contact)
     assert [float(end_pressures[f"edge_pressure_{end_name}"]) for end_name in ("first", "last")] == pytest.approx(
         [first, last], nan_ok=True
     )
-    factors = analysis.edge_factors(selected)
+    edge_factors = analysis.edge_factors(selected_contact)
     for end_name in ("first", "last"):
-        assert np.isnan(float(factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
+        assert np.isnan(float(edge_factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
     half_result = analysis.edge_pressure(full_contact.sel(y=slice(0, None)))
     assert [float(pressure) for pressure in half_result.values()] == [1.0, 4.0]
 
 
-def test_cut_of_a_solved_contact(case_result: xr.Dataset) -> None:
+def test_cut_solved_contact_has_no_contact_length(case_result: xr.Dataset) -> None:
     half_contact = case_result.sel(x=slice(0.26e-3, None))
     assert np.isnan(analysis.edge_pressure(half_contact)["edge_pressure_first"])
     full_pressure = analysis.edge_pressure(case_result)["edge_pressure_last"]
@@ -232,7 +234,7 @@ def test_cut_of_a_solved_contact(case_result: xr.Dataset) -> None:
     assert "contact_length" not in half_contact.contact.summary()
 
 
-def test_order_of_positions(case_result: xr.Dataset) -> None:
+def test_results_do_not_depend_on_order_of_positions(case_result: xr.Dataset) -> None:
     shuffled_result = case_result.isel(
         x=slice(None, None, -1), y=np.random.default_rng(1).permutation(case_result.sizes["y"])
     )

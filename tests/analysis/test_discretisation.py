@@ -24,13 +24,13 @@ PRESSURE = 1.5e9
 LUNDBERG = profiles.Lundberg.for_pressure(PRESSURE, radius=5e-3, modulus=STEEL.plane_strain_modulus)
 
 
-def with_errors(case: Case, grid: Grid) -> xr.Dataset:
+def solve_with_errors(case: Case, grid: Grid) -> xr.Dataset:
     """Contact on a grid, with the errors from the contact on the coarser grid."""
     fine_result, coarse_result = (solve(case, cells, stresses=False) for cells in (grid, grid.coarsened()))
     return fine_result.assign(discretisation_error(fine_result, coarse_result).data_vars)
 
 
-def case_of(length: float, profile: profiles.Profile) -> Case:
+def make_case(length: float, profile: profiles.Profile) -> Case:
     return Case(body=BODY, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=PRESSURE)
 
 
@@ -43,7 +43,7 @@ def solve_on_cells(case: Case, cells: int):
 
 @pytest.mark.parametrize(
     "case",
-    [case_of(8 * HALF_WIDTH, profiles.Cylinder()), case_of(7 * HALF_WIDTH, LUNDBERG)],
+    [make_case(8 * HALF_WIDTH, profiles.Cylinder()), make_case(7 * HALF_WIDTH, LUNDBERG)],
     ids=["flush cylinder", "Lundberg"],
 )
 def test_error_estimates_bound_fine_grid_difference(case):
@@ -58,14 +58,14 @@ def test_error_estimates_bound_fine_grid_difference(case):
         assert float(estimate[f"{name}_error"]) <= 0.08 * max(float(reference[name]), 1.0)
 
 
-def test_symmetric_contacts_have_equal_ends():
-    case = case_of(8 * HALF_WIDTH, profiles.Cylinder())
+def test_end_pressures_of_symmetric_contact_are_equal():
+    case = make_case(8 * HALF_WIDTH, profiles.Cylinder())
     result = discretisation_error(solve_on_cells(case, 32), solve_on_cells(case, 16))
     assert float(result.end_pressure_first) == pytest.approx(float(result.end_pressure_last), rel=1e-6)
 
 
-def test_comment_at_a_sharp_end():
-    case = case_of(5 * HALF_WIDTH, profiles.Cylinder())
+def test_sharp_end_has_infinite_error_with_comment():
+    case = make_case(5 * HALF_WIDTH, profiles.Cylinder())
     result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     for name in ("peak_pressure_error", "end_pressure_first_error", "end_pressure_last_error"):
         assert np.isinf(float(result[name]))
@@ -74,47 +74,47 @@ def test_comment_at_a_sharp_end():
     assert np.isfinite(float(result.half_width_middle_error))
 
 
-def test_contact_inside_the_profile():
-    case = case_of(7 * HALF_WIDTH, LUNDBERG)
+def test_end_pressure_of_contact_inside_profile_is_zero():
+    case = make_case(7 * HALF_WIDTH, LUNDBERG)
     result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     assert float(result.end_pressure_first) == float(result.end_pressure_first_error) == 0.0
 
 
-def test_coarser_reference_raises():
-    contact = solve_on_cells(case_of(8 * HALF_WIDTH, profiles.Cylinder()), 16)
+def test_contact_on_equal_grid_raises():
+    contact = solve_on_cells(make_case(8 * HALF_WIDTH, profiles.Cylinder()), 16)
     with pytest.raises(InvalidInputError, match="coarse"):
         discretisation_error(contact, contact)
 
 
 @pytest.mark.parametrize(("pressure", "cells"), [(1e9, 2), (0.8e9, 6)])
-def test_peak_at_a_sharp_end(pressure, cells):
+def test_peak_error_with_loaded_sharp_end_is_infinite(pressure, cells):
     """The largest cell pressure lies in the middle on coarse cells, although the peak at the end is higher."""
     body = FiniteLengthSpace(length=0.8e-3, material=STEEL)
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.FullCrown(0.1))
     case = Case(body=body, roller=roller, max_pressure=pressure)
-    result = with_errors(case, choose_grid(case, cells_x=cells))
+    result = solve_with_errors(case, choose_grid(case, cells_x=cells))
     assert 0 < float(result.end_pressure_first) < float(result.peak_pressure)
     assert np.isinf(float(result.peak_pressure_error))
     assert "ends sharply" in result.peak_pressure_error.attrs["comment"]
 
 
-EDGES = [
+SMALL_RADIUS_PROFILES = [
     profiles.PartialCrown(straight_length=0.4e-3, crown_radius=0.05e-3),
     profiles.PartialCrown(straight_length=0.4e-3, crown_radius=0.2e-3),
     profiles.Cylinder(fillet_radius=0.05e-3),
     profiles.Cylinder(fillet_radius=0.2e-3),
 ]
-"""Edges of a roller of 0.5 mm that take more than 16 cells per half-width."""
+"""Edges of a roller of 0.5 mm that need more than 16 cells per half-width."""
 
 
-@pytest.mark.parametrize("profile", EDGES, ids=repr)
+@pytest.mark.parametrize("profile", SMALL_RADIUS_PROFILES, ids=repr)
 @pytest.mark.parametrize("length", [0.5e-3, 0.8e-3], ids=["flush", "inside"])
 @pytest.mark.parametrize("cells", [2, 4, 8])
-def test_coarse_cells_at_an_edge_radius(profile, length, cells):
+def test_coarse_cells_at_small_radius_have_infinite_error(profile, length, cells):
     body = FiniteLengthSpace(length=length, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
     grid = choose_grid(case, cells_x=cells, cells_y=8, window=3)
-    result = with_errors(case, grid)
+    result = solve_with_errors(case, grid)
     assert np.isinf(float(result.peak_pressure_error))
     comment = result.peak_pressure_error.attrs["comment"]
     assert comment.startswith(f"the cells are too coarse for the shape's turn on {grid.shape[0]} x {grid.shape[1]}")
@@ -130,23 +130,23 @@ def test_coarse_cells_at_an_edge_radius(profile, length, cells):
 def test_errors_cover_refined_column_values(profile, cells):
     body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
-    result = with_errors(case, choose_grid(case, cells_x=cells))
-    refined = solve(case, stresses=False)
+    result = solve_with_errors(case, choose_grid(case, cells_x=cells))
+    refined_result = solve(case, stresses=False)
     assert float(result.peak_pressure_error) < 0.06 * float(result.peak_pressure)
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last"):
-        tolerance = float(result[f"{name}_error"]) + float(refined[f"{name}_error"])
-        assert abs(float(result[name]) - float(refined[name])) <= tolerance, name
+        tolerance = float(result[f"{name}_error"]) + float(refined_result[f"{name}_error"])
+        assert abs(float(result[name]) - float(refined_result[name])) <= tolerance, name
 
 
-@pytest.mark.parametrize("case", [case_of(5 * HALF_WIDTH, profiles.Cylinder()), case_of(8 * HALF_WIDTH, LUNDBERG)])
-def test_end_pressures_below_the_peak(case):
+@pytest.mark.parametrize("case", [make_case(5 * HALF_WIDTH, profiles.Cylinder()), make_case(8 * HALF_WIDTH, LUNDBERG)])
+def test_end_pressures_are_at_most_peak_pressure(case):
     result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     ends = [float(result[f"end_pressure_{end}"]) for end in ("first", "last")]
     assert float(result.peak_pressure) >= max(ends)
 
 
 @pytest.mark.parametrize("poisson", [-0.5, -0.2])
-def test_peak_at_a_free_end(poisson):
+def test_peak_of_auxetic_body_lies_at_free_end(poisson):
     """An auxetic material is stiffer at its free end: the pressure rises towards the end."""
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(210e9, poisson))
     case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH), max_pressure=PRESSURE)
@@ -155,39 +155,38 @@ def test_peak_at_a_free_end(poisson):
         discretisation_error(fine_result, coarse_result),
         discretisation_error(reference_result, fine_result),
     )
-    for estimate_or_reference in (estimate, reference):
-        assert float(estimate_or_reference.peak_pressure) == float(
-            max(estimate_or_reference.end_pressure_first, estimate_or_reference.end_pressure_last)
-        )
+    for result in (estimate, reference):
+        assert float(result.peak_pressure) == float(max(result.end_pressure_first, result.end_pressure_last))
     difference = abs(float(estimate.peak_pressure) - float(reference.peak_pressure))
     assert difference <= float(estimate.peak_pressure_error) <= 0.12 * float(reference.peak_pressure)
 
 
-def test_advice_for_coarse_cells():
-    steep_profile = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
-    grid = choose_grid(steep_profile, cells_x=4, cells_y=8)
-    result = with_errors(steep_profile, grid)
+def test_comment_contains_sufficient_cell_counts():
+    case = make_case(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
+    grid = choose_grid(case, cells_x=4, cells_y=8)
+    result = solve_with_errors(case, grid)
     comment = result.peak_pressure_error.attrs["comment"]
     assert np.isinf(float(result.peak_pressure_error))
     assert f"turn on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out" in comment
     cell_counts = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
-    finer_result = choose_grid(steep_profile, cells_x=float(cell_counts[1]), cells_y=float(cell_counts[2]))
-    assert finer_result.shape[0] >= 4 * grid.shape[0]
-    assert finer_result.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
-    foreign_result = [
-        dataset.drop_vars("hertz_half_width")
-        for dataset in (solve_on_cells(steep_profile, 32), solve_on_cells(steep_profile, 16))
+    finer_grid = choose_grid(case, cells_x=float(cell_counts[1]), cells_y=float(cell_counts[2]))
+    assert finer_grid.shape[0] >= 4 * grid.shape[0]
+    assert finer_grid.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
+    results_without_half_width = [
+        dataset.drop_vars("hertz_half_width") for dataset in (solve_on_cells(case, 32), solve_on_cells(case, 16))
     ]
-    assert re.search(r"or take [\d.]+ times as many", discretisation_error(*foreign_result).peak_pressure_error.comment)
+    assert re.search(
+        r"or take [\d.]+ times as many", discretisation_error(*results_without_half_width).peak_pressure_error.comment
+    )
 
 
-@pytest.mark.parametrize("wider", [1.5, 1.0005])
-def test_graded_columns_get_no_grid_advice(wider):
+@pytest.mark.parametrize("width_ratio", [1.5, 1.0005])
+def test_comment_on_graded_columns_contains_no_grid(width_ratio):
     """The centres of columns of two alternating widths have equal distances; the widths may differ by nanometres."""
-    case = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
-    edges = np.cumsum([0.0, *np.tile([1.0, wider], 16)])
+    case = make_case(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
+    edges = np.cumsum([0.0, *np.tile([1.0, width_ratio], 16)])
     window = 2 * case.hertz_half_width
     grid = Grid.from_edges(edges * (BODY.length / edges[-1]), (-window, window), 32)
-    comment = with_errors(case, grid).peak_pressure_error.attrs["comment"]
+    comment = solve_with_errors(case, grid).peak_pressure_error.attrs["comment"]
     assert "times as many" in comment
     assert "choose_grid" not in comment

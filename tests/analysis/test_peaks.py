@@ -21,13 +21,13 @@ from tests.stand_in_solver import FAILS
         ("orthogonal_shear_range", 0.5, 0.5),
     ],
 )
-def test_line_contact(strip_result, variable: str, value: float, depth: float) -> None:
-    scale, peak_pressure = 2e-4, 1e9
-    result = analysis.largest_sample(strip_result(scale, peak_pressure), variable, along="x")
+def test_largest_samples_of_line_contact_equal_johnson(strip_result, variable: str, value: float, depth: float) -> None:
+    half_width, peak_pressure = 2e-4, 1e9
+    result = analysis.largest_sample(strip_result(half_width, peak_pressure), variable, along="x")
     assert result[f"largest_{variable}"].dims == ("x_field",)
     assert result[f"largest_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
-    assert result[f"largest_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
-    overall_sample = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
+    assert result[f"largest_{variable}_z"].values / half_width == pytest.approx(depth, abs=0.03)
+    overall_sample = analysis.largest_sample(strip_result(half_width, peak_pressure), variable)
     assert float(overall_sample[f"largest_{variable}"]) == float(result[f"largest_{variable}"].max())
     assert overall_sample[f"largest_{variable}_x"].attrs["units"] == "m"
 
@@ -42,15 +42,15 @@ def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
         study_samples = analysis.largest_sample(study_dataset, variable)
-        for e in (0.0, 2.0):
-            selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+        for e_over_a in (0.0, 2.0):
+            selected_case = {"e_over_a": e_over_a, "friction": 0.1, "body": "finite-length"}
             case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), variable)
             for name, value in case_sample.items():
                 assert float(study_samples[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-6), name
         assert study_samples.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_sections_of_a_study(study_dataset: xr.Dataset) -> None:
+def test_section_samples_of_study_equal_case_samples(study_dataset: xr.Dataset) -> None:
     study_samples = analysis.largest_sample(study_dataset, along="x")
     selected_case = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
     case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), along="x")
@@ -58,31 +58,35 @@ def test_sections_of_a_study(study_dataset: xr.Dataset) -> None:
     assert np.array_equal(sections, case_sample["largest_von_mises"])
 
 
-def test_unknown_measure(strip_result) -> None:
+def test_unknown_measure_raises(strip_result) -> None:
     with pytest.raises(InvalidInputError, match="did you mean 'von_mises'"):
         analysis.largest_sample(strip_result(), "von_misses")
     with pytest.raises(InvalidInputError, match="tau_xy is missing"):
         analysis.largest_sample(strip_result().drop_vars("tau_xy"), "tresca")
 
 
-def test_variable_without_axes(strip_result) -> None:
+def test_variable_without_axes_raises(strip_result) -> None:
     with pytest.raises(InvalidInputError, match="field along"):
         analysis.largest_sample(strip_result(), "hertz_half_width")
     with pytest.raises(InvalidInputError, match="field along x"):
         analysis.largest_sample(xr.Dataset({"a": ("z", [1.0])}, {"z": [0.0]}), "a", along="x")
 
 
-def test_measure_of_padding(study_dataset: xr.Dataset) -> None:
+def test_measure_of_failed_case_raises(study_dataset: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="nan everywhere"):
         analysis.measure(study_dataset.sel(friction=FAILS), "tresca")
 
 
-def test_principal_stresses_as_measures(strip_result) -> None:
+def test_principal_stresses_are_ordered_and_sum_to_invariants(strip_result) -> None:
     result = strip_result(friction=0.2)
-    principal = [analysis.measure(result, f"principal_stress_{rank}") for rank in (1, 2, 3)]
-    assert (principal[0] >= principal[1]).all()
-    assert (principal[1] >= principal[2]).all()
-    np.testing.assert_allclose(principal[0] - principal[2], analysis.measure(result, "tresca"), rtol=1e-9, atol=1e-6)
-    np.testing.assert_allclose(sum(principal) / 3, analysis.measure(result, "hydrostatic"), rtol=1e-9, atol=1e-6)
-    assert principal[0].attrs == {"units": "Pa", "long_name": "largest principal stress"}
+    principal_stresses = [analysis.measure(result, f"principal_stress_{rank}") for rank in (1, 2, 3)]
+    assert (principal_stresses[0] >= principal_stresses[1]).all()
+    assert (principal_stresses[1] >= principal_stresses[2]).all()
+    np.testing.assert_allclose(
+        principal_stresses[0] - principal_stresses[2], analysis.measure(result, "tresca"), rtol=1e-9, atol=1e-6
+    )
+    np.testing.assert_allclose(
+        sum(principal_stresses) / 3, analysis.measure(result, "hydrostatic"), rtol=1e-9, atol=1e-6
+    )
+    assert principal_stresses[0].attrs == {"units": "Pa", "long_name": "largest principal stress"}
     assert float(analysis.largest_sample(result, "principal_stress_1")["largest_principal_stress_1"]) > 0

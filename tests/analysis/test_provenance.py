@@ -1,4 +1,4 @@
-"""Case of a result: stored, compared by values, independent of the prescription of the load."""
+"""Case of a result: stored, compared by values, independent of how the load is prescribed."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def result() -> xr.Dataset:
         replace(CASE, max_pressure=None, load=CASE.normal_load),
     ],
 )
-def test_equal_cases(result: xr.Dataset, case) -> None:
+def test_equal_case_is_accepted(result: xr.Dataset, case) -> None:
     check_solved_for(result, case)
     check_solved_for(xr.Dataset(), case)
 
@@ -56,23 +56,23 @@ def test_equal_cases(result: xr.Dataset, case) -> None:
         (HalfSpace(material=STEEL), r"body.kind = FiniteLengthSpace.*body.kind = HalfSpace"),
     ],
 )
-def test_differing_cases(result: xr.Dataset, case, message: str) -> None:
+def test_differing_case_raises(result: xr.Dataset, case, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         check_solved_for(result, case)
 
 
-def test_comparison_of_parts(result: xr.Dataset) -> None:
+def test_comparison_is_limited_to_body_and_roller(result: xr.Dataset) -> None:
     check_solved_for(result, replace(CASE, friction=0.1, max_pressure=1e9), compared_names=("body", "roller"))
 
 
-def test_case_of_an_opened_study(study_dataset: xr.Dataset) -> None:
+def test_case_of_opened_study_raises(study_dataset: xr.Dataset) -> None:
     for dataset in (study_dataset, study_dataset.isel(e_over_a=0, friction=0, body=0)):
         with pytest.raises(InvalidInputError, match=r"load_case\(folder, case_id\)"):
             solved_case(dataset)
 
 
 @pytest.mark.parametrize("change", [{"max_pressure": None, "approach": 2e-6}, {"load_position": 0.31e-3}])
-def test_prescribed_results(change) -> None:
+def test_prescribed_approach_or_position_equals_case_of_its_load(change) -> None:
     case = replace(CASE, body=HalfSpace(material=STEEL), **change)
     result = solve(case, accuracy=0.1, stresses=False)
     motion = {"load_position": None, "tilt": float(result["tilt"])} if "load_position" in change else {}
@@ -84,15 +84,15 @@ def test_prescribed_results(change) -> None:
         check_solved_for(result, replace(prescribed_case, load=1.01 * load["load"]))
 
 
-def test_joined_results(result: xr.Dataset) -> None:
+def test_joined_results_are_compared_by_swept_value(result: xr.Dataset) -> None:
     joined_dataset = xr.concat([result, result], xr.Variable("friction", [0.05, 0.1]))
-    selected = joined_dataset.sel(friction=0.1)
-    check_solved_for(selected, replace(CASE, friction=0.1))
+    selected_dataset = joined_dataset.sel(friction=0.1)
+    check_solved_for(selected_dataset, replace(CASE, friction=0.1))
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*friction = 0.05; .*drop its attribute"):
-        check_solved_for(selected, CASE)
+        check_solved_for(selected_dataset, CASE)
 
 
-class Named:
+class UserProfile:
     """A user profile whose repr differs in each session."""
 
     def drop(self, x, length):
@@ -100,7 +100,7 @@ class Named:
 
 
 def test_user_profiles_are_compared_by_drop() -> None:
-    cases = [replace(CASE, roller=replace(CASE.roller, profile=Named())) for _ in range(2)]
+    cases = [replace(CASE, roller=replace(CASE.roller, profile=UserProfile())) for _ in range(2)]
     assert repr(cases[0].roller.profile) != repr(cases[1].roller.profile)
     check_solved_for(with_provenance(xr.Dataset(), cases[0], {}, {}), cases[1])
 
@@ -111,5 +111,5 @@ def test_comparison_ignores_rounding_and_version(result: xr.Dataset) -> None:
     check_solved_for(with_provenance(xr.Dataset(), case, {}, {}), replace(case, end_distance=0.0))
     inputs = json.loads(result.attrs["contactstudy_inputs"])
     for table in (inputs["case"] | {"something": 1}, [1], {"kind": "Roller"}):
-        newer = result.assign_attrs(contactstudy_inputs=json.dumps(inputs | {"case": table}))
-        check_solved_for(newer, replace(CASE, friction=0.2))
+        newer_result = result.assign_attrs(contactstudy_inputs=json.dumps(inputs | {"case": table}))
+        check_solved_for(newer_result, replace(CASE, friction=0.2))

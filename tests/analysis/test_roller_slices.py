@@ -24,7 +24,7 @@ from tests.split_columns import split_columns
 
 
 @pytest.mark.parametrize("count", [1, 5, 16])
-def test_load_of_slices(strip_result, count: int) -> None:
+def test_loads_of_slices_sum_to_resultant(strip_result, count: int) -> None:
     result = strip_result()
     table = analysis.slices(result, count)
     assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(result)["resultant"]))
@@ -33,7 +33,7 @@ def test_load_of_slices(strip_result, count: int) -> None:
     assert float(table["position"].mean()) == pytest.approx(3.0)
 
 
-def test_columns_of_the_line_contact(strip_result) -> None:
+def test_slices_of_line_contact_equal_johnson(strip_result) -> None:
     table = analysis.slices(strip_result(), 4).to_dataframe()
     assert table.index.tolist() == [1, 2, 3, 4]
     assert table["axial_pressure"].to_numpy() == pytest.approx(1, abs=1e-3)
@@ -42,12 +42,12 @@ def test_columns_of_the_line_contact(strip_result) -> None:
     assert table["largest_orthogonal_shear_amplitude_z"].to_numpy() == pytest.approx(0.5, abs=0.03)
 
 
-def test_slices_without_stress_points(strip_result) -> None:
+def test_slices_without_stress_points_have_no_stress(strip_result) -> None:
     table = analysis.slices(strip_result().isel(x_field=[0]), 4)
     assert table["largest_von_mises"].isnull().values.tolist() == [False, True, True, True]
 
 
-def test_surfaces_only(study_dataset: xr.Dataset) -> None:
+def test_slices_of_surface_contain_no_stress(study_dataset: xr.Dataset) -> None:
     study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
     surface = study_case.drop_vars([name for name in study_case.data_vars if "z_over_a" in study_case[name].dims])
     table = analysis.slices(surface, 5)
@@ -55,13 +55,13 @@ def test_surfaces_only(study_dataset: xr.Dataset) -> None:
     assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(study_case)["resultant"]))
 
 
-def test_real_contact_is_symmetric(case_result: xr.Dataset) -> None:
+def test_slices_of_symmetric_contact_are_symmetric(case_result: xr.Dataset) -> None:
     table = analysis.slices(case_result, 6)
     for name in ("normal_load", "axial_pressure", "half_width"):
         assert np.allclose(table[name], table[name][::-1], rtol=1e-5)
 
 
-def test_bad_input(strip_result, study_dataset: xr.Dataset) -> None:
+def test_invalid_slice_count_or_study_raises(strip_result, study_dataset: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="number of cells, 16"):
         analysis.slices(strip_result(), 17)
     with pytest.raises(InvalidInputError, match="count"):
@@ -105,11 +105,12 @@ DEFAULT_KINDS = ("crowned",)
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=() if kind in DEFAULT_KINDS else pytest.mark.slow) for kind in CASES]
+    "case_name",
+    [pytest.param(case_name, marks=() if case_name in DEFAULT_KINDS else pytest.mark.slow) for case_name in CASES],
 )
-def test_errors_against_finer_columns(kind: str) -> None:
-    coarse_result = solve(CASES[kind], stresses=False, accuracy=0.02)
-    fine_result = solve(CASES[kind], split_columns(coarse_result, 4), stresses=False)
+def test_errors_cover_difference_from_finer_columns(case_name: str) -> None:
+    coarse_result = solve(CASES[case_name], stresses=False, accuracy=0.02)
+    fine_result = solve(CASES[case_name], split_columns(coarse_result, 4), stresses=False)
     for count in (3, 12, 30):
         table, finer_table = analysis.slices(coarse_result, count), analysis.slices(fine_result, count)
         for name in ("axial_pressure", "normal_load"):
@@ -122,7 +123,7 @@ def test_errors_against_finer_columns(kind: str) -> None:
             assert typical_errors < 0.1, (count, name)
 
 
-def test_mirrored_slices() -> None:
+def test_errors_of_symmetric_slices_are_symmetric() -> None:
     """A border between an unloaded slice and the contact has the same uncertainty on both sides."""
     result = solve(make_case(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3), stresses=False, accuracy=0.03)
     table = analysis.slices(result, 25)
@@ -139,11 +140,11 @@ def test_mirrored_slices() -> None:
     assert errors[0] == 5.0
 
 
-def test_narrow_columns_and_singular_ends() -> None:
+def test_end_slices_have_peak_of_fillet_or_infinity() -> None:
     rounded_result = solve(CASES["rounded edges"], stresses=False, accuracy=0.03)
     maximum = analysis.slices(rounded_result, 10)["axial_pressure"]
-    for side, index in (("first", 0), ("last", -1)):
-        peak, error = (float(rounded_result[f"peak_pressure_{side}{kind}"]) for kind in ("", "_error"))
+    for end, index in (("first", 0), ("last", -1)):
+        peak, error = (float(rounded_result[f"peak_pressure_{end}{kind}"]) for kind in ("", "_error"))
         assert float(maximum[index]) == pytest.approx(peak, abs=error)
     sharp_table = analysis.slices(solve(CASES["sharp end inside the face"], stresses=False, accuracy=0.1), 10)
     for name in ("axial_pressure", "axial_pressure_error"):
@@ -151,7 +152,7 @@ def test_narrow_columns_and_singular_ends() -> None:
     assert np.isfinite(sharp_table["normal_load_error"]).all()
 
 
-def test_errors_of_a_case_of_a_study(tmp_path) -> None:
+def test_errors_of_study_case_exist_on_original_cells(tmp_path) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.5e-3, "e_over_a": 1.0, "stresses": False}
     base["accuracy"] = 0.05
     edge = {"name": "rounded", "kind": "cylinder", "fillet_radius": 0.05e-3}
@@ -168,12 +169,12 @@ def test_errors_of_a_case_of_a_study(tmp_path) -> None:
     assert np.isnan(analysis.slices(common_cells, 6)["axial_pressure_error"]).all()
 
 
-def test_error_kinds(case_result: xr.Dataset) -> None:
-    refined = solve(CASES["straight, flush with free ends"], stresses=False, accuracy=0.05)
+def test_slices_of_cut_results_have_no_error_estimate(case_result: xr.Dataset) -> None:
+    refined_result = solve(CASES["straight, flush with free ends"], stresses=False, accuracy=0.05)
     results = {
         "given cells": case_result,
-        "cut": refined.sel(x=slice(0.5e-3, None)),
-        "half": refined.sel(y=slice(0, None)),
+        "cut": refined_result.sel(x=slice(0.5e-3, None)),
+        "half": refined_result.sel(y=slice(0, None)),
     }
     for description, result in results.items():
         table = analysis.slices(result, 4)
@@ -184,11 +185,11 @@ def test_error_kinds(case_result: xr.Dataset) -> None:
     for name, array in analysis.slices(case_result, 4).data_vars.items():
         if name not in ("position", "width"):
             assert array.attrs[ERROR_KIND] == NOT_ESTIMATED, name
-    refined_slices = analysis.slices(refined, 4)
+    refined_slices = analysis.slices(refined_result, 4)
     assert all(refined_slices[name].attrs[ERROR_KIND] == ESTIMATED for name in ("axial_pressure", "normal_load"))
 
 
-def test_values_of_parts_between_borders() -> None:
+def test_maxima_and_means_between_borders_equal_values_by_hand() -> None:
     edges, borders = np.array([[0.0, 1], [1, 2], [2, 3], [3, 4]]), np.array([0.0, 2.0, 4.0])
     pressure = Columns(edges, edges.mean(axis=1), np.array([1.0, 1, 2, 2]))
     maximum, error = find_maxima(pressure, borders)

@@ -1,4 +1,4 @@
-"""Numbers in engineering units, and tables."""
+"""Numbers in engineering units, and HTML tables."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from contactstudy.arrays.engineering import (
 )
 
 
-def test_units_of_a_size() -> None:
-    assert [unit_for(*pair) for pair in ((1.5e9, "Pa"), (2e-6, "m"), (0.1, "1"))] == [
+def test_unit_follows_from_magnitude() -> None:
+    assert [unit_for(*value_and_unit) for value_and_unit in ((1.5e9, "Pa"), (2e-6, "m"), (0.1, "1"))] == [
         (1e9, "GPa"),
         (1e-6, "\N{MICRO SIGN}m"),
         (1.0, ""),
     ]
 
 
-def test_written_numbers() -> None:
+def test_formatted_numbers_have_four_digits() -> None:
     values = (0.000211234, 1531.52, 1e-9, math.inf)
     assert [format_value(value) for value in values] == ["0.0002112", "1532", "1e-09", "\N{INFINITY}"]
     assert [format_quantity(1.5e9, "Pa"), format_quantity(0.1, "1")] == ["1.5 GPa", "0.1"]

@@ -1,4 +1,4 @@
-"""Grids of any cell edges: properties of their cells, and errors with positions."""
+"""Grids of graded cells: properties of the cells, and positions in error messages."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Y_RANGE = (-1.0, 1.0)
 RATIOS = st.lists(st.floats(0.3, 3.3), min_size=1, max_size=30)
 
 
-def edges_of(ratios: list[float]) -> list[float]:
+def compute_edges(ratios: list[float]) -> list[float]:
     return np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios]))).tolist()
 
 
 @given(ratios=RATIOS)
 def test_cells_tile_range(ratios: list[float]) -> None:
-    edges = np.array(edges_of(ratios))
+    edges = np.array(compute_edges(ratios))
     grid = Grid.from_edges(edges, Y_RANGE, 4)
     assert np.allclose(grid.x_edges, edges, rtol=1e-12)
     assert grid.x_edges[0] == grid.x_range[0]
@@ -36,7 +36,7 @@ def test_cells_tile_range(ratios: list[float]) -> None:
 
 @given(ratios=RATIOS)
 def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
-    edges = edges_of(ratios)
+    edges = compute_edges(ratios)
     grid, equal_grid = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
     assert grid == equal_grid
     assert hash(grid) == hash(equal_grid)
@@ -47,13 +47,13 @@ def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
 @given(ratios=RATIOS)
 def test_coarsened_grid_keeps_alternate_edges(ratios: list[float]) -> None:
     """Coarsened cells may differ by more than the limit of given cells."""
-    grid = Grid.from_edges(edges_of(ratios), Y_RANGE, 4)
-    coarsened = grid.coarsened()
-    assert coarsened.cells_y == 2
-    assert coarsened.x_range == grid.x_range
+    grid = Grid.from_edges(compute_edges(ratios), Y_RANGE, 4)
+    coarse_grid = grid.coarsened()
+    assert coarse_grid.cells_y == 2
+    assert coarse_grid.x_range == grid.x_range
     if not grid.uniform:
-        assert set(coarsened.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
-        assert float(coarsened.widths.sum()) == pytest.approx(float(grid.widths.sum()))
+        assert set(coarse_grid.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
+        assert float(coarse_grid.widths.sum()) == pytest.approx(float(grid.widths.sum()))
 
 
 def test_equal_widths_make_a_uniform_grid() -> None:
@@ -105,7 +105,7 @@ def test_growing_edges_cover_distance(distance: float, width: float) -> None:
         assert np.all(widths[1:] / widths[:-1] < MAX_WIDTH_RATIO)
 
 
-def test_growing_edges_of_extreme_distances() -> None:
+def test_growing_edges_end_at_zero_and_infinite_distance() -> None:
     assert growing_edges(0.0, 1.0).size == 0
     assert growing_edges(np.inf, 0.5).tolist() == [0.5]
 

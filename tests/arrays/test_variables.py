@@ -1,4 +1,4 @@
-"""The package returns exactly the variables of the table."""
+"""The variables of all results are those of the table of variables."""
 
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ from tests.stand_in_solver import solve_fake
 Returned = dict[str, xr.Dataset]
 
 UNCHANGED_NAME_FUNCTIONS = {"normalized", "single_case", "measure", "positions", "along_line", "in_plane"}
-"""Functions whose result has the variables of their argument, perhaps in other units."""
+"""Functions whose result has the variables of their argument, possibly in other units."""
 
 
-def functions() -> dict[str, Callable[..., object]]:
+def list_dataset_functions() -> dict[str, Callable[..., object]]:
     """Public functions that return labelled data, by name."""
     packages: list[ModuleType] = [
         cs,
@@ -72,37 +72,41 @@ def functions() -> dict[str, Callable[..., object]]:
         verification,
         wear,
     ]
-    values = {name: getattr(package, name) for package in packages for name in package.__all__}
+    functions_by_name = {name: getattr(package, name) for package in packages for name in package.__all__}
     for module in (cs.roughness, cs.stress):
-        values |= {
+        functions_by_name |= {
             name: value for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
         }
     return {
         name: value
-        for name, value in values.items()
+        for name, value in functions_by_name.items()
         if inspect.isfunction(value)
         and not name.startswith("_")
         and inspect.signature(value).return_annotation in ("xr.Dataset", "xr.DataArray")
     }
 
 
-FUNCTIONS = functions()
+FUNCTIONS = list_dataset_functions()
 
 
-def as_dataset(value: xr.Dataset | xr.DataArray) -> xr.Dataset:
-    if isinstance(value, xr.Dataset):
-        return value
-    return value.coords.to_dataset() if value.name in value.coords else value.to_dataset(name=str(value.name))
+def make_dataset(public_object: xr.Dataset | xr.DataArray) -> xr.Dataset:
+    if isinstance(public_object, xr.Dataset):
+        return public_object
+    return (
+        public_object.coords.to_dataset()
+        if public_object.name in public_object.coords
+        else public_object.to_dataset(name=str(public_object.name))
+    )
 
 
-def _contact_with_motion(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -> xr.Dataset:
+def solve_contact_with_motion(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -> xr.Dataset:
     """The case's contact with stick and slip."""
     gap = case.gap(cs.Grid.from_centres(contact.x.values, contact.y.values))
-    labelled = contact.pressure.copy(data=gap).assign_attrs(units="m")
-    return cs.solve_contact(case.body, labelled, load=case.normal_load, friction=0.1, motion=motion)
+    labelled_gap = contact.pressure.copy(data=gap).assign_attrs(units="m")
+    return cs.solve_contact(case.body, labelled_gap, load=case.normal_load, friction=0.1, motion=motion)
 
 
-def one_case(folder: Path) -> xr.Dataset:
+def load_one_case(folder: Path) -> xr.Dataset:
     """A case of a study, loaded from the folder."""
     cs.run_study(small_study(sweep={"e_over_a": [0.0]}), folder, workers=0, solver=solve_fake, progress=False)
     return study.load_case(folder, str(cs.open_study(folder)["case_id"].values.item()))
@@ -112,7 +116,7 @@ def one_case(folder: Path) -> xr.Dataset:
 def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr.Dataset, tmp_path_factory) -> Returned:
     """Results of every public function, by its name."""
     steel = cs.Material(210e9, 0.3)
-    elastic_plastic = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+    steel_thermal = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
@@ -125,7 +129,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     coarse_result = cs.solve(case, grid.coarsened(), stresses=False)
     # Sharp rigid ends: the pressure is singular at both ends.
     half_space = cs.HalfSpace(material=steel)
-    sharp_result = cs.Case(body=half_space, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
+    sharp_case = cs.Case(body=half_space, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
     chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
     chamfered_case = cs.Case(
         body=half_space, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9
@@ -142,8 +146,8 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     law = bearing.ContactLaw(
         label_law(ContactSolver(case, 0.1, 1e-4), NODES, np.full((2, *NODES.normal_load.shape), 0.01))
     )
-    smooth_result = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(4e-7), material=steel)
-    crowned_case = cs.Case(body=half_space, roller=smooth_result, max_pressure=1.5e9)
+    smooth_roller = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(4e-7), material=steel)
+    crowned_case = cs.Case(body=half_space, roller=smooth_roller, max_pressure=1.5e9)
     oiled_case = replace(
         crowned_case,
         motion=cs.Sliding(body_speed=2.0, roller_speed=2.0),
@@ -155,15 +159,13 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         asperities=film.Asperities(rms=2e-7),
         resolution=film.FilmResolution(finest=1.1, finest_share=0.25, inner=0.3, columns=0.5, levels=3),
     )
-    values: dict[str, xr.Dataset | xr.DataArray] = {
+    returned_values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": case_result,
-        "solve on refined columns": cs.solve(
-            sharp_result, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1
-        ),
+        "solve on refined columns": cs.solve(sharp_case, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1),
         "solve, chamfered": cs.solve(chamfered_case, stresses=False, accuracy=0.1),
         "solve_contact": contact,
-        "solve_contact, rolling": _contact_with_motion(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
-        "solve_contact, shifted": _contact_with_motion(case, contact, cs.Shift(y=1e-8)),
+        "solve_contact, rolling": solve_contact_with_motion(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
+        "solve_contact, shifted": solve_contact_with_motion(case, contact, cs.Shift(y=1e-8)),
         "stress_field": cs.stress_field(body, pressure, z=depths),
         "displacement_field": cs.displacement_field(body, pressure, z=depths),
         "surface_displacement": cs.surface_displacement(body, pressure),
@@ -189,8 +191,8 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "flash_temperature": heat.flash_temperature(
             replace(case, motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0)),
             case_result,
-            body=elastic_plastic,
-            roller=elastic_plastic,
+            body=steel_thermal,
+            roller=steel_thermal,
             z=depths,
         ),
         "case_numbers": xr.Dataset(case_numbers(case_result)),
@@ -199,7 +201,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "slice_model": bearing.slice_model(case),
         "atlas": cs.atlas(100.0, 1.0, 0.2),
         "open_study": study_dataset,
-        "load_case": one_case(tmp_path_factory.mktemp("study")),
+        "load_case": load_one_case(tmp_path_factory.mktemp("study")),
         "collect": study_dataset.drop_dims(
             [dim for dim in study_dataset.dims if dim not in study_dataset["status"].dims]
         ),
@@ -230,18 +232,18 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
-    for name in FUNCTIONS.keys() - values.keys():
-        values[name] = FUNCTIONS[name](strip if name == "window_remainder" else case_result)  # type: ignore[assignment]
-    return {name: as_dataset(value) for name, value in values.items()}
+    for name in FUNCTIONS.keys() - returned_values.keys():
+        returned_values[name] = FUNCTIONS[name](strip if name == "window_remainder" else case_result)  # type: ignore[assignment]
+    return {name: make_dataset(value) for name, value in returned_values.items()}
 
 
-def test_every_public_function_is_looked_at(returned_datasets: Returned) -> None:
+def test_every_public_function_has_a_result(returned_datasets: Returned) -> None:
     assert {"solve", "contact_results", "dang_van", "open_study", "slice_model", "verify"} <= FUNCTIONS.keys()
     assert FUNCTIONS.keys() <= returned_datasets.keys()
 
 
 MOTION_VARIABLES = ("slip_x", "slip_y", "friction_work")
-"""Slip per rolled distance or of a shift, by the unit."""
+"""Variables with different units for rolling and for a shift."""
 
 
 def test_table_contains_all_variables(returned_datasets: Returned) -> None:
@@ -284,9 +286,9 @@ def test_dimensions_match_table(returned_datasets: Returned) -> None:
             if name not in VARIABLES:
                 continue
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
-            own_dims = {"distance"} if function in ("along_line", "wear_in") else set()
-            of_a_law = {"approach", "normal_load", "moment"}
-            further_dims = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own_dims}
+            distance_dims = {"distance"} if function in ("along_line", "wear_in") else set()
+            law_dims = {"approach", "normal_load", "moment"}
+            further_dims = {*PARAMETERS, "case", "slice", "pass_number", *law_dims, *distance_dims}
             if not dims - further_dims <= {*VARIABLES[str(name)].dims}:
                 differing_names.append((function, name, array.dims))
     assert differing_names == []
@@ -344,8 +346,8 @@ def test_derived_quantity_labels() -> None:
     over_a = specification("x_field_over_a", coordinate=True)
     assert over_a is not None
     assert (over_a.dims, over_a.symbol) == (("x_field",), "x/a")
-    without_symbol = variable_of("stick_over_a", {})
-    assert (without_symbol.symbol, without_symbol.long_name) == ("", "whether the surfaces stick over a")
+    text_without_symbol = variable_of("stick_over_a", {})
+    assert (text_without_symbol.symbol, text_without_symbol.long_name) == ("", "whether the surfaces stick over a")
 
 
 @pytest.mark.parametrize(
@@ -358,7 +360,7 @@ def test_derived_quantity_labels() -> None:
         ("half_width_middle_error", "", "m"),
     ],
 )
-def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
+def test_entries_of_derived_names_follow_rules(name: str, symbol: str, units: str) -> None:
     entry = specification(name)
     assert entry is not None
     assert (entry.symbol, entry.units) == (symbol, units)
@@ -405,9 +407,9 @@ def test_require_suggests_the_nearest_variable() -> None:
 
 
 def test_require_message_contains_case_failure() -> None:
-    failed = xr.Dataset({"status": "failed", "message": "too narrow"})
+    failed_case = xr.Dataset({"status": "failed", "message": "too narrow"})
     with pytest.raises(InvalidInputError, match=r"a failed case.*too narrow"):
-        require(failed, "pressure")
+        require(failed_case, "pressure")
 
 
 def test_require_raises_for_wrong_type() -> None:
@@ -415,9 +417,11 @@ def test_require_raises_for_wrong_type() -> None:
         require([], argument="result")
 
 
-def test_error_kinds() -> None:
-    marked = without_error(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach")
-    kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(marked).data_vars.items()}
+def test_error_kind_follows_from_error_variable() -> None:
+    marked_result = without_error(
+        xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach"
+    )
+    kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(marked_result).data_vars.items()}
     assert kinds == {"peak_pressure": ESTIMATED, "peak_pressure_error": None, "approach": NOT_ESTIMATED}
     unknown_error = describe(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": np.nan}))
     assert unknown_error["peak_pressure"].attrs[ERROR_KIND] == NOT_ESTIMATED

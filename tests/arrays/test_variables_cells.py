@@ -19,37 +19,37 @@ EDGES = np.array([0.0, 0.1, 0.3, 0.7, 1.1, 1.4, 1.5])
 GRID = Grid.from_edges(EDGES, (-1.0, 1.0), 4)
 
 
-def array(**coordinates: object) -> xr.DataArray:
+def make_array(**coordinates: object) -> xr.DataArray:
     return xr.DataArray(
         np.arange(24.0).reshape(GRID.shape), coords={"x": GRID.x, "y": GRID.y, **coordinates}, dims=("x", "y")
     )
 
 
 def test_edges_follow_from_widths() -> None:
-    data = array(x_width=("x", GRID.widths))
-    values, grid = labelled_cells("p", data)
+    array = make_array(x_width=("x", GRID.widths))
+    values, grid = labelled_cells("p", array)
     assert np.allclose(grid.x_edges, EDGES)
-    assert np.array_equal(values, data.values)
+    assert np.array_equal(values, array.values)
 
 
 @pytest.mark.parametrize("extent", [(0.0, np.inf), (0.0, 1.5)])
-def test_edges_follow_from_the_end_of_the_body(extent: tuple[float, float]) -> None:
-    _, grid = labelled_cells("p", array(), extent=extent)
+def test_edges_follow_from_body_extent(extent: tuple[float, float]) -> None:
+    _, grid = labelled_cells("p", make_array(), extent=extent)
     assert np.allclose(grid.x_edges, EDGES)
 
 
 def test_dimension_order_does_not_matter() -> None:
-    data = array(x_width=("x", GRID.widths))
-    values, grid = labelled_cells("p", data.transpose("y", "x"))
+    array = make_array(x_width=("x", GRID.widths))
+    values, grid = labelled_cells("p", array.transpose("y", "x"))
     assert grid.shape == GRID.shape
-    assert np.array_equal(values, data.values)
+    assert np.array_equal(values, array.values)
 
 
-def test_uniform_cells_need_no_more_coordinates() -> None:
-    uniform = Grid(x_range=(0.0, 1.5), y_range=(-1.0, 1.0), cells_x=6, cells_y=4)
-    assert cell_coordinates(uniform) == {}
-    data = xr.DataArray(np.ones((6, 4)), coords={"x": uniform.x, "y": uniform.y}, dims=("x", "y"))
-    assert labelled_cells("p", data)[1].uniform
+def test_uniform_cells_have_no_width_coordinate() -> None:
+    uniform_grid = Grid(x_range=(0.0, 1.5), y_range=(-1.0, 1.0), cells_x=6, cells_y=4)
+    assert cell_coordinates(uniform_grid) == {}
+    array = xr.DataArray(np.ones((6, 4)), coords={"x": uniform_grid.x, "y": uniform_grid.y}, dims=("x", "y"))
+    assert labelled_cells("p", array)[1].uniform
 
 
 @given(ratios=st.lists(st.floats(0.35, 2.9), min_size=2, max_size=20))
@@ -66,44 +66,44 @@ def test_labels_restore_grid(ratios: list[float]) -> None:
             1
         ],
     ):
-        # The centres alone determine edges by a recursion that doubles no error. Nearly uniform cells become uniform.
-        within = SPACING_TOLERANCE * grid.widths.max() if grid_of_labels.uniform else 1e-9 * edges[-1]
-        assert np.allclose(grid_of_labels.x_edges, edges, atol=within)
+        # Without widths, the edges follow from the centres. Nearly uniform cells become uniform.
+        tolerance = SPACING_TOLERANCE * grid.widths.max() if grid_of_labels.uniform else 1e-9 * edges[-1]
+        assert np.allclose(grid_of_labels.x_edges, edges, atol=tolerance)
 
 
 def test_selected_cells_keep_widths() -> None:
-    data = array(x_width=("x", GRID.widths)).isel(x=slice(1, 4))
-    assert np.allclose(labelled_cells("p", data)[1].x_edges, EDGES[1:5])
+    array = make_array(x_width=("x", GRID.widths)).isel(x=slice(1, 4))
+    assert np.allclose(labelled_cells("p", array)[1].x_edges, EDGES[1:5])
 
 
 @pytest.mark.parametrize(
-    ("data", "message"),
+    ("array", "message"),
     [
-        (array(), r"x = .*uniformly spaced.*x_width"),
+        (make_array(), r"x = .*uniformly spaced.*x_width"),
         (
-            array(x_width=("x", GRID.widths)).isel(x=[0, 1, 3, 4]),
+            make_array(x_width=("x", GRID.widths)).isel(x=[0, 1, 3, 4]),
             r"x_width = 'one cell ends at 0.3 m, the next begins at 0.7 m",
         ),
-        (array(x_width=("x", 1.2 * GRID.widths)), r"x_width = 'one cell ends at .* the next begins at"),
-        (array(x_width=("x", GRID.widths)).isel(x=slice(None, None, -1)), r"x"),
-        (array(x_width=("x", -GRID.widths)), r"x"),
-        (array(x_width=("x", np.full(6, np.nan))), r"x_width"),
+        (make_array(x_width=("x", 1.2 * GRID.widths)), r"x_width = 'one cell ends at .* the next begins at"),
+        (make_array(x_width=("x", GRID.widths)).isel(x=slice(None, None, -1)), r"x"),
+        (make_array(x_width=("x", -GRID.widths)), r"x"),
+        (make_array(x_width=("x", np.full(6, np.nan))), r"x_width"),
     ],
     ids=["no widths", "a gap", "an overlap", "backwards", "negative", "not finite"],
 )
-def test_cells_with_gaps_raise(data: xr.DataArray, message: str) -> None:
+def test_cells_with_gaps_raise(array: xr.DataArray, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        labelled_cells("p", data)
+        labelled_cells("p", array)
 
 
 def test_inconsistent_centres_raise() -> None:
-    data = xr.DataArray(np.ones((3, 2)), coords={"x": [0.5, 0.6, 2.0], "y": [0.0, 1.0]}, dims=("x", "y"))
+    array = xr.DataArray(np.ones((3, 2)), coords={"x": [0.5, 0.6, 2.0], "y": [0.0, 1.0]}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=r"a cell centre at 0.6 m.*x_width"):
-        labelled_cells("p", data, extent=(0.0, np.inf))
+        labelled_cells("p", array, extent=(0.0, np.inf))
 
 
 @pytest.mark.parametrize("engine", ["netcdf4", "h5netcdf"])
-def test_result_on_graded_cells_survives_a_file(tmp_path: Path, engine: str) -> None:
+def test_stored_result_on_graded_cells_has_equal_stresses(tmp_path: Path, engine: str) -> None:
     steel = cs.Material(210e9, 0.3)
     body = cs.FiniteLengthSpace(length=0.6e-3, material=steel)
     roller = cs.Roller(radius=5e-3, length=0.5e-3, profile=cs.profiles.Cylinder(fillet_radius=0.1e-3))

@@ -35,22 +35,22 @@ from contactstudy.roughness import heights_on
 OnCells = Callable[..., xr.DataArray]
 
 
-def test_gap_and_cells_in_other_units(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_contact_of_gap_in_other_units_is_equal(on_cells: OnCells, half_space: HalfSpace) -> None:
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
-    scaled = (1e3 * gap).assign_attrs(units="mm").assign_coords(x=1e6 * gap.x, y=1e6 * gap.y)
+    gap_in_mm = (1e3 * gap).assign_attrs(units="mm").assign_coords(x=1e6 * gap.x, y=1e6 * gap.y)
     for axis in ("x", "y"):
-        scaled[axis].attrs["units"] = "um"
-    expected, computed = (solve_contact(half_space, input_gap, load=4 / 3) for input_gap in (gap, scaled))
+        gap_in_mm[axis].attrs["units"] = "um"
+    expected, computed = (solve_contact(half_space, input_gap, load=4 / 3) for input_gap in (gap, gap_in_mm))
     np.testing.assert_allclose(computed["pressure"], expected["pressure"], rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(computed["x"], expected["x"], rtol=1e-12)
 
 
-def test_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_fields_of_pressure_in_gigapascals_are_equal(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
-    scaled = (1e-9 * pressure).assign_attrs(units="GPa")
-    displacements = [surface_displacement(half_space, load) for load in (scaled, pressure)]
+    pressure_in_gpa = (1e-9 * pressure).assign_attrs(units="GPa")
+    displacements = [surface_displacement(half_space, load) for load in (pressure_in_gpa, pressure)]
     np.testing.assert_allclose(*displacements, rtol=1e-12)
-    stresses = [stress_field(half_space, load, z=[0.5]).sigma_zz for load in (scaled, pressure)]
+    stresses = [stress_field(half_space, load, z=[0.5]).sigma_zz for load in (pressure_in_gpa, pressure)]
     np.testing.assert_allclose(*stresses, rtol=1e-12)
 
 
@@ -61,7 +61,7 @@ def test_unknown_units_raise(unit: object) -> None:
 
 
 @pytest.mark.parametrize("values", [np.ones((4, 4)) * 1j, np.zeros((4, 4), "datetime64[ns]"), np.full((4, 4), "a")])
-def test_only_real_numbers_are_taken(values: np.ndarray, half_space: HalfSpace) -> None:
+def test_arrays_without_real_numbers_raise(values: np.ndarray, half_space: HalfSpace) -> None:
     cells = np.arange(4.0)
     array = xr.DataArray(values, coords={"x": cells, "y": cells}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=r"pressure.dtype = .* real numbers"):
@@ -89,7 +89,7 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
         check_friction(friction.assign_attrs(units="N"), Sliding(), coupled=False)
 
 
-def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_stresses_at_depths_in_micrometres_are_equal(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     depths = xr.DataArray([0.5e6], dims="z", attrs={"units": "um"})
     expected, computed = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
@@ -98,7 +98,7 @@ def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None
         stress_field(half_space, pressure, z=depths.assign_attrs(units="1"))
 
 
-def test_yield_stress_over_depth() -> None:
+def test_yield_stress_over_depth_is_converted() -> None:
     yield_stress = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
     material = ElasticPlastic(yield_stress=yield_stress)
     for material_variant in (material, replace(material, isotropic_hardening=1e9)):
@@ -110,27 +110,31 @@ def test_yield_stress_over_depth() -> None:
 
 
 def test_converted_variable_has_si_units() -> None:
-    converted = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
-    assert (converted.attrs["units"], converted["x"].attrs["units"]) == ("m", "m")
-    xr.testing.assert_identical(in_si("gap", converted, "m"), converted)
+    converted_gap = in_si(
+        "gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m"
+    )
+    assert (converted_gap.attrs["units"], converted_gap["x"].attrs["units"]) == ("m", "m")
+    xr.testing.assert_identical(in_si("gap", converted_gap, "m"), converted_gap)
 
 
 def test_dataset_positions_are_converted() -> None:
     position = ("x", [0.0, 2.0], {"units": "mm"})
     pressure = xr.DataArray([1.0, 2.0], {"x": position}, "x", attrs={"units": "GPa"})
     dataset = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
-    converted = require_in_si(dataset, "pressure")
-    assert (converted.pressure.values.tolist(), converted.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
-    assert (converted.pressure.attrs["units"], converted.x.attrs["units"]) == ("Pa", "m")
-    assert require_in_si(converted, "pressure") is converted
-    for bad, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
+    converted_gap = require_in_si(dataset, "pressure")
+    assert (converted_gap.pressure.values.tolist(), converted_gap.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
+    assert (converted_gap.pressure.attrs["units"], converted_gap.x.attrs["units"]) == ("Pa", "m")
+    assert require_in_si(converted_gap, "pressure") is converted_gap
+    for invalid_unit, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
         with pytest.raises(InvalidInputError, match=message):
-            require_in_si(dataset.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
+            require_in_si(
+                dataset.assign(pressure=pressure.assign_attrs(units=invalid_unit)), "pressure", argument="result"
+            )
     with pytest.raises(InvalidInputError, match="traction_y is missing"):
         require_in_si(dataset, "traction_y")
 
 
-def test_numbers_of_contact_laws_and_measured_profiles() -> None:
+def test_inputs_of_contact_law_and_measured_profile_are_converted() -> None:
     steel = Material(210e9, 0.3)
     roller = Roller(radius=5e-3, length=0.3e-3, profile=FullCrown(crown_radius=0.1))
     case = Case(body=HalfSpace(material=steel), roller=roller, load=30.0)
@@ -140,16 +144,16 @@ def test_numbers_of_contact_laws_and_measured_profiles() -> None:
     np.testing.assert_allclose(law.table["tilt"], 1e-3 * tilts)
     np.testing.assert_allclose(law.table["approach"], 1e-6 * approaches)
     x = xr.DataArray(np.linspace(0.0, 0.3, 6), dims="x", attrs={"units": "mm"})
-    measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
-    assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
+    measured_profile = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
+    assert measured_profile == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
 
 
-def lazy_array(value: float) -> da.Array:
+def make_lazy_array(value: float) -> da.Array:
     """Return a number as a lazy array, as in a file opened with chunks."""
     return da.from_array(np.array(value))
 
 
-def scalar(value: object, units: str | None = None) -> xr.DataArray:
+def make_scalar(value: object, units: str | None = None) -> xr.DataArray:
     return xr.DataArray(value, attrs={} if units is None else {"units": units})
 
 
@@ -174,19 +178,19 @@ def case_with(**parameters) -> Case:
 
 @pytest.mark.parametrize("name", SCALARS)
 def test_scalar_argument_is_converted(name: str) -> None:
-    read_argument, value, units, si = SCALARS[name]
+    read_argument, value, units, si_value = SCALARS[name]
     for argument in (
-        scalar(value, units),
-        scalar(si),
-        np.array(si),
-        scalar(lazy_array(si)),
-        scalar(lazy_array(value), units),
+        make_scalar(value, units),
+        make_scalar(si_value),
+        np.array(si_value),
+        make_scalar(make_lazy_array(si_value)),
+        make_scalar(make_lazy_array(value), units),
     ):
         argument_value = read_argument(argument)
         assert type(argument_value) is float
-        assert argument_value == pytest.approx(si, rel=1e-15)
+        assert argument_value == pytest.approx(si_value, rel=1e-15)
     with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
-        read_argument(scalar(value, "furlong"))
+        read_argument(make_scalar(value, "furlong"))
     assert len(str(caught.value)) < 200
 
 
@@ -197,9 +201,13 @@ def test_lazy_scalar_is_accepted_as_pressure(tmp_path: Path) -> None:
 
 
 def test_messages_do_not_compute_lazy_arrays() -> None:
-    never = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
-    for value, kind in ((never, "Array"), (scalar(never, "N"), "DataArray"), (scalar(never).expand_dims(x=3), "")):
-        with pytest.raises(InvalidInputError, match=rf"case = lazy {kind}.*type float64: must be a Case"):
+    unevaluated_array = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
+    for value, type_name in (
+        (unevaluated_array, "Array"),
+        (make_scalar(unevaluated_array, "N"), "DataArray"),
+        (make_scalar(unevaluated_array).expand_dims(x=3), ""),
+    ):
+        with pytest.raises(InvalidInputError, match=rf"case = lazy {type_name}.*type float64: must be a Case"):
             solve(value)
 
 
@@ -209,26 +217,26 @@ def test_result_scalar_is_accepted_as_load() -> None:
 
 
 def test_study_converts_scalars_with_units() -> None:
-    base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
-    study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
+    base = {"young": make_scalar(210, "GPa"), "poisson": 0.3, "radius": make_scalar(5, "mm"), "roller_length": 1e-3}
+    study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [make_scalar(1500, "MPa"), 1e9]})
     assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
     with pytest.raises(InvalidInputError, match=r"young.attrs\['units'\] = 'mm'"):
-        Study(name="a", base={"young": scalar(210, "mm")})
+        Study(name="a", base={"young": make_scalar(210, "mm")})
 
 
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        (scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
+        (make_scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
         (np.ones(3), "ndarray of shape (3,) and type float64"),
-        (scalar(-5.0, "mm"), "-5.0 mm"),
+        (make_scalar(-5.0, "mm"), "-5.0 mm"),
         (np.float64(-1.0), "-1.0"),
-        (scalar(True), "True"),
-        (scalar("a"), "'a'"),
+        (make_scalar(True), "True"),
+        (make_scalar("a"), "'a'"),
         (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
         ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
-        (scalar(lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
-        (scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
+        (make_scalar(make_lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
+        (make_scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
         (xr.Dataset, repr(xr.Dataset)),
         (da.Array, repr(da.Array)),
     ],

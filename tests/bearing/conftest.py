@@ -1,4 +1,4 @@
-"""A contact law of several tests."""
+"""Contact law shared by the tests of bearings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STEEL = Material(210e9, 0.3)
 
 @pytest.fixture(scope="session")
 def short_case() -> Case:
-    """A crowned roller on a half-space; `test_at_approach` has free ends."""
+    """A crowned roller on a half-space."""
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.Lundberg(0.2e-6))
     return Case(body=HalfSpace(material=STEEL), roller=roller, load=70.0)
 

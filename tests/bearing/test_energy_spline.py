@@ -1,4 +1,4 @@
-"""The interpolation on contacts in closed form."""
+"""Interpolation of the strain energy for two springs in closed form."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STIFFNESS, ARM = 3e12, 1e-3
 """Two springs of power 3/2 on either side of mid-length, N / m**1.5 and m."""
 
 
-def springs(approaches: np.ndarray, tilts: np.ndarray) -> Nodes:
+def compute_forces_of_two_springs(approaches: np.ndarray, tilts: np.ndarray) -> Nodes:
     delta, theta = np.meshgrid(approaches, tilts, indexing="ij")
     depths = delta + ARM * theta, delta - ARM * theta
     forces = [STIFFNESS * np.maximum(depth, 0.0) ** 1.5 for depth in depths]
@@ -21,41 +21,41 @@ def springs(approaches: np.ndarray, tilts: np.ndarray) -> Nodes:
     return Nodes(approaches, tilts, energy, forces[0] + forces[1], ARM * (forces[0] - forces[1]))
 
 
-NODES = springs(np.geomspace(1e-6, 5e-6, 7), np.linspace(-5e-4, 5e-4, 7))
+NODES = compute_forces_of_two_springs(np.geomspace(1e-6, 5e-6, 7), np.linspace(-5e-4, 5e-4, 7))
 
 
 @pytest.mark.parametrize(("delta", "theta"), [(1.3e-6, 1e-4), (4.1e-6, -4.3e-4), (2e-6, 0.0)])
-def test_motion_of_two_springs(delta: float, theta: float) -> None:
+def test_interpolated_loads_and_stiffnesses_equal_two_springs(delta: float, theta: float) -> None:
     motion = EnergySpline.fit(NODES)(np.array(delta), np.array(theta))
-    k_right, k_left = (1.5 * STIFFNESS * np.sqrt(delta + side * ARM * theta) for side in (1, -1))
-    exact = springs(np.array([delta]), np.array([theta]))
-    assert float(motion.normal_load) == pytest.approx(float(exact.normal_load[0, 0]), rel=2e-4)
+    right_stiffness, left_stiffness = (1.5 * STIFFNESS * np.sqrt(delta + sign * ARM * theta) for sign in (1, -1))
+    exact_nodes = compute_forces_of_two_springs(np.array([delta]), np.array([theta]))
+    assert float(motion.normal_load) == pytest.approx(float(exact_nodes.normal_load[0, 0]), rel=2e-4)
     assert float(motion.moment) == pytest.approx(
-        float(exact.moment[0, 0]), abs=2e-4 * ARM * float(exact.normal_load[0, 0])
+        float(exact_nodes.moment[0, 0]), abs=2e-4 * ARM * float(exact_nodes.normal_load[0, 0])
     )
-    assert float(motion.normal_stiffness) == pytest.approx(k_right + k_left, rel=5e-3)
+    assert float(motion.normal_stiffness) == pytest.approx(right_stiffness + left_stiffness, rel=5e-3)
     assert float(motion.coupling_stiffness) == pytest.approx(
-        ARM * (k_right - k_left), abs=5e-3 * ARM * (k_right + k_left)
+        ARM * (right_stiffness - left_stiffness), abs=5e-3 * ARM * (right_stiffness + left_stiffness)
     )
-    assert float(motion.tilting_stiffness) == pytest.approx(ARM**2 * (k_right + k_left), rel=1e-2)
+    assert float(motion.tilting_stiffness) == pytest.approx(ARM**2 * (right_stiffness + left_stiffness), rel=1e-2)
 
 
-def test_stiffness_equals_the_derivative() -> None:
+def test_stiffness_equals_difference_quotient() -> None:
     spline = EnergySpline.fit(NODES)
     delta, theta, step = 2.2e-6, 1.7e-4, 1e-4
     motion = spline(np.array(delta), np.array(theta))
-    upper, lower = (spline(np.array(delta * (1 + side * step)), np.array(theta)) for side in (1, -1))
-    assert float(upper.normal_load - lower.normal_load) / (2 * step * delta) == pytest.approx(
+    upper_nodes, lower_nodes = (spline(np.array(delta * (1 + sign * step)), np.array(theta)) for sign in (1, -1))
+    assert float(upper_nodes.normal_load - lower_nodes.normal_load) / (2 * step * delta) == pytest.approx(
         float(motion.normal_stiffness), rel=1e-5
     )
-    assert float(upper.moment - lower.moment) / (2 * step * delta) == pytest.approx(
+    assert float(upper_nodes.moment - lower_nodes.moment) / (2 * step * delta) == pytest.approx(
         float(motion.coupling_stiffness), rel=1e-5
     )
-    upper, lower = (spline(np.array(delta), np.array(theta * (1 + side * step))) for side in (1, -1))
-    assert float(upper.normal_load - lower.normal_load) / (2 * step * theta) == pytest.approx(
+    upper_nodes, lower_nodes = (spline(np.array(delta), np.array(theta * (1 + sign * step))) for sign in (1, -1))
+    assert float(upper_nodes.normal_load - lower_nodes.normal_load) / (2 * step * theta) == pytest.approx(
         float(motion.coupling_stiffness), rel=1e-5
     )
-    assert float(upper.moment - lower.moment) / (2 * step * theta) == pytest.approx(
+    assert float(upper_nodes.moment - lower_nodes.moment) / (2 * step * theta) == pytest.approx(
         float(motion.tilting_stiffness), rel=1e-5
     )
 
@@ -64,7 +64,9 @@ def test_stiffness_equals_the_derivative() -> None:
 @pytest.mark.parametrize("tilt_scale", [5e-4, 1e-3, 1.5e-3])
 def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, tilts: int) -> None:
     """At the largest tilts one spring leaves the surface: the stiffness has a kink."""
-    nodes = springs(np.geomspace(1e-6, 5e-6, approaches), np.linspace(-tilt_scale, tilt_scale, tilts))
+    nodes = compute_forces_of_two_springs(
+        np.geomspace(1e-6, 5e-6, approaches), np.linspace(-tilt_scale, tilt_scale, tilts)
+    )
     errors, dims = estimate_fit_errors(nodes, 2 * ARM), ("approach", "tilt")
     arrays = {
         "normal_load": nodes.normal_load,
@@ -75,10 +77,13 @@ def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, t
     }
     table = xr.Dataset({name: (dims, values) for name, values in arrays.items()} | {"contact_length": 2 * ARM})
     law = ContactLaw(table.assign_coords(approach=nodes.approaches, tilt=nodes.tilts))
-    fine = springs(np.geomspace(1e-6, 5e-6, 21), np.linspace(-tilt_scale, tilt_scale, 25))
-    motion = law.at(fine.approaches, fine.tilts)
-    load, moment = np.abs(motion.normal_load - fine.normal_load), np.abs(motion.moment - fine.moment)
-    assert bool((load <= motion.normal_load_error).all())
-    assert bool((moment <= motion.moment_error).all())
+    exact_nodes = compute_forces_of_two_springs(np.geomspace(1e-6, 5e-6, 21), np.linspace(-tilt_scale, tilt_scale, 25))
+    motion = law.at(exact_nodes.approaches, exact_nodes.tilts)
+    load_difference, moment_difference = (
+        np.abs(motion.normal_load - exact_nodes.normal_load),
+        np.abs(motion.moment - exact_nodes.moment),
+    )
+    assert bool((load_difference <= motion.normal_load_error).all())
+    assert bool((moment_difference <= motion.moment_error).all())
     # The stated error exceeds the difference at the kink by a moderate factor only.
-    assert float((load / motion.normal_load_error).max()) > 0.04
+    assert float((load_difference / motion.normal_load_error).max()) > 0.04

@@ -1,4 +1,4 @@
-"""Two contacts in series."""
+"""Contact laws of two raceways in series."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from contactstudy.bearing import ContactLaw, Raceways
 ARM = 1e-3
 
 
-def springs(stiffness: float, arm: float = ARM) -> ContactLaw:
-    """Two springs on either side of mid-length."""
+def make_spring_law(stiffness: float, arm: float = ARM) -> ContactLaw:
+    """Contact law of linear springs on both sides of mid-length."""
     approach, tilt = np.geomspace(5e-7, 2e-5, 9), np.linspace(-5e-4, 5e-4, 9)
     delta, theta = np.meshgrid(approach, tilt, indexing="ij")
     dims = ("approach", "tilt")
-    tilting = stiffness * arm**2
+    tilting_stiffness = stiffness * arm**2
     table = xr.Dataset(
         {
             "normal_load": (dims, stiffness * delta),
-            "moment": (dims, tilting * theta),
-            "strain_energy": (dims, 0.5 * stiffness * delta**2 + 0.5 * tilting * theta**2),
+            "moment": (dims, tilting_stiffness * theta),
+            "strain_energy": (dims, 0.5 * stiffness * delta**2 + 0.5 * tilting_stiffness * theta**2),
             "relative_load_error": 0.01,
             "relative_moment_error": 0.02,
             "contact_length": 2 * ARM,
@@ -46,8 +46,8 @@ def test_compliances_of_raceways_add_up(short_law: ContactLaw) -> None:
     assert float(loaded_motion.tilt) == pytest.approx(8e-4, rel=1e-4)
 
 
-def test_springs_in_series() -> None:
-    raceways = Raceways(springs(2e7), springs(6e7))
+def test_raceways_of_springs_equal_springs_in_series() -> None:
+    raceways = Raceways(make_spring_law(2e7), make_spring_law(6e7))
     motion = raceways.at(8e-6, 4e-4)
     assert float(motion.inner_approach) == pytest.approx(6e-6, rel=2e-2)
     assert float(motion.normal_load) == pytest.approx(1.5e7 * 8e-6, rel=2e-2)
@@ -66,19 +66,19 @@ def test_raceways_broadcast_arguments(short_law: ContactLaw) -> None:
     assert bool((loaded_motion.tilt.diff("moment") > 0).all())
 
 
-def test_stiffness_in_series(short_law: ContactLaw) -> None:
-    raceways, delta = Raceways(short_law, springs(4e7)), 2.5e-6
+def test_stiffness_of_raceways_equals_difference_quotient(short_law: ContactLaw) -> None:
+    raceways, delta = Raceways(short_law, make_spring_law(4e7)), 2.5e-6
     step = 1e-3 * delta
     motion = raceways.at([delta - step, delta, delta + step], 3e-4)
     slope = float(motion.normal_load[2] - motion.normal_load[0]) / (2 * step)
     assert float(motion.normal_stiffness[1]) == pytest.approx(slope, rel=1e-3)
 
 
-def test_error_names_the_argument_outside_a_table(short_law: ContactLaw) -> None:
+def test_argument_outside_table_raises(short_law: ContactLaw) -> None:
     raceways = Raceways(short_law, short_law)
     with pytest.raises(InvalidInputError, match="approach = 2e-05: must be in the tables of both"):
         raceways.at(2e-5)
     with pytest.raises(InvalidInputError, match="approach, tilt = "):
-        Raceways(short_law, springs(1e12)).at(8e-6)
+        Raceways(short_law, make_spring_law(1e12)).at(8e-6)
     with pytest.raises(InvalidInputError, match="outer"):
         Raceways(short_law, short_law.table)  # type: ignore[arg-type]

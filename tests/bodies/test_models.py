@@ -1,4 +1,4 @@
-"""The comparison models and the exact bodies."""
+"""Comparison models against the exact bodies."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_order_of_end_pressures_by_model(cylinder_gap, unit_material: Material) 
         section_maxima = solve_contact(body, cylinder_gap(8.0, (64, 48)), load=8 * LINE_LOAD)["pressure"].max("y")
         end_ratios[model] = float(section_maxima[0] / section_maxima[32])
     assert end_ratios["mirror"] == pytest.approx(1.0, abs=1e-3)
-    # The mirror's end is too stiff, the factor's end too soft.
+    # The end of the mirror model is too stiff, the end of the model with a factor too compliant.
     assert end_ratios["mirror-factor"] < end_ratios["exact"] - 0.1
     assert end_ratios["exact"] < end_ratios["mirror"] - 0.3
 
@@ -41,32 +41,32 @@ def test_mirror_model_has_normal_stress_on_the_ends(strip_pressure, unit_materia
     stress = stress_field(body, pressure, x=[0.0], y=[0.0, 0.5], z=[0.1, 0.5], inside_cells=pressure)
     assert float(np.abs(stress["tau_xz"]).max()) < 1e-8
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-    residual_stress = end_traction_residual(body, sliding(pressure.values, 0.0), grid, np.zeros(1), np.array([0.1]))
+    end_traction = end_traction_residual(body, sliding(pressure.values, 0.0), grid, np.zeros(1), np.array([0.1]))
     # In plane strain along the mirrored strip the stress is Poisson's ratio times the sum of the lateral stresses.
     line_stresses = closed_forms.hertz_strip(0.0, 0.1, 1.0, 1.0, 0.3)
-    assert residual_stress == pytest.approx(abs(float(line_stresses["sigma_xx"])), rel=0.02)
+    assert end_traction == pytest.approx(abs(float(line_stresses["sigma_xx"])), rel=0.02)
     assert float(stress["sigma_xx"].sel(x=0.0, y=0.0, z=0.1)) == pytest.approx(
-        -residual_stress * float(pressure.max()), rel=1e-9
+        -end_traction * float(pressure.max()), rel=1e-9
     )
 
 
 def test_factor_multiplies_only_mirrored_loads(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 8.0), (-1.5, 1.5), (64, 24))
     displacements = {
-        m: surface_displacement(QuarterSpace(material=unit_material, model=m), pressure)
-        for m in ("mirror", "mirror-factor")
+        model: surface_displacement(QuarterSpace(material=unit_material, model=model), pressure)
+        for model in ("mirror", "mirror-factor")
     }
     from contactstudy import HalfSpace
 
-    half_space_result = surface_displacement(HalfSpace(material=unit_material), pressure)
+    half_space_displacement = surface_displacement(HalfSpace(material=unit_material), pressure)
     factor = guilbault_factor(0.3)
     assert np.allclose(
-        displacements["mirror-factor"] - half_space_result,
-        factor * (displacements["mirror"] - half_space_result),
+        displacements["mirror-factor"] - half_space_displacement,
+        factor * (displacements["mirror"] - half_space_displacement),
         atol=1e-12,
     )
 
 
-def test_error_names_the_unknown_model(unit_material: Material) -> None:
+def test_unknown_model_raises(unit_material: Material) -> None:
     with pytest.raises(InvalidInputError, match=r"model = 'miror'.*did you mean 'mirror'"):
         QuarterSpace(material=unit_material, model="miror")

@@ -1,4 +1,4 @@
-"""Cases, rollers, grids and materials: properties and rejected input."""
+"""Cases, rollers, grids and materials: properties and invalid input."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ BODY = FiniteLengthSpace(length=10.2e-3, material=STEEL)
 
 @given(st.floats(0.5e9, 3e9))
 def test_load_and_pressure_are_equivalent(pressure: float) -> None:
-    by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
-    by_load = Case(body=BODY, roller=ROLLER, load=by_pressure.normal_load)
-    assert by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
-    assert by_load.hertz_half_width == pytest.approx(by_pressure.hertz_half_width, rel=1e-12)
+    case_by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
+    case_by_load = Case(body=BODY, roller=ROLLER, load=case_by_pressure.normal_load)
+    assert case_by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
+    assert case_by_load.hertz_half_width == pytest.approx(case_by_pressure.hertz_half_width, rel=1e-12)
 
 
 def test_roller_is_centred_by_default() -> None:
@@ -55,7 +55,7 @@ def test_gap_is_zero_at_first_touch() -> None:
     assert gap[50, 0] == pytest.approx((1e-4 * 10 / 11) ** 2 / 2 / 5e-3)
 
 
-def test_grid_follows_the_case() -> None:
+def test_chosen_grid_covers_body_and_half_widths() -> None:
     case = Case(body=BODY, roller=ROLLER, max_pressure=1.5e9)
     grid = choose_grid(case, cells_x=6, cells_y=12, window=1.7)
     assert grid.x_range == (0.0, 10.2e-3)
@@ -67,12 +67,12 @@ def test_grid_follows_the_case() -> None:
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
-def test_grid_from_its_centres(start: float, span: float, cells: int) -> None:
+def test_grid_from_centres_equals_grid(start: float, span: float, cells: int) -> None:
     grid = Grid(x_range=(start, start + span), y_range=(-span, span), cells_x=cells, cells_y=cells + 1)
-    assume(grid.dx > 1e-9 * abs(start))  # otherwise the differences of the centres are rounding errors
-    copy = Grid.from_centres(grid.x, grid.y)
-    assert copy.shape == grid.shape
-    assert copy.dx == pytest.approx(grid.dx, rel=1e-3)
+    assume(grid.dx > 1e-9 * abs(start))  # larger positions would make the differences of centres rounding errors
+    restored_grid = Grid.from_centres(grid.x, grid.y)
+    assert restored_grid.shape == grid.shape
+    assert restored_grid.dx == pytest.approx(grid.dx, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_grid_from_its_centres(start: float, span: float, cells: int) -> None:
         (lambda: choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=1e9), window=0.0), "window = 0.0"),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 
@@ -194,7 +194,7 @@ def test_combined_radius_of_two_curved_bodies() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "message"),
+    ("first_radius", "second_radius", "message"),
     [
         (6e-3, -6e-3, "hollow radius is the larger"),
         (6e-3, -5e-3, "hollow radius is the larger"),
@@ -204,20 +204,20 @@ def test_combined_radius_of_two_curved_bodies() -> None:
         ("6 mm", 6e-3, "first = '6 mm'"),
     ],
 )
-def test_radii_without_a_gap_are_rejected(first, second, message: str) -> None:
+def test_radii_without_a_gap_are_rejected(first_radius, second_radius, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        Roller.combined_radius(first, second)
+        Roller.combined_radius(first_radius, second_radius)
 
 
 def test_roller_ends_are_symmetric_within_rounding() -> None:
     """75 cells on 0.6 mm have midpoints at 0.1 and 0.5 mm, at the ends of the roller."""
     grid = Grid(x_range=(0.0, 0.6e-3), y_range=(-1e-4, 1e-4), cells_x=75, cells_y=4)
-    for profile, ends in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
+    for profile, end_columns in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
         roller = Roller(radius=5e-3, length=0.4e-3, profile=profile)
         case = Case(body=FiniteLengthSpace(length=0.6e-3, material=STEEL), roller=roller, max_pressure=1.5e9)
         gap = case.gap(grid)
         np.testing.assert_allclose(gap, gap[::-1])
-        assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == ends
+        assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == end_columns
 
 
 @pytest.mark.parametrize("body", [FiniteLengthSpace(length=10e-3, material=STEEL), QuarterSpace(material=STEEL)])
@@ -235,8 +235,8 @@ def test_edge_radius_of_the_body_bounds_the_pressure() -> None:
     body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
     roller = Roller(radius=5e-3, length=0.6e-3, material=STEEL)
     case = Case(body=body, roller=roller, load=60.0, end_distance=-0.1e-3)
-    sharp = solve(case, accuracy=0.05, stresses=False)
-    rounded = solve(replace(case, body_edge=profiles.Cylinder(0.04e-3)), accuracy=0.05, stresses=False)
-    assert np.isinf(sharp.peak_pressure)
-    assert "body_edge" in str(assess(sharp))
-    assert np.isfinite(rounded.peak_pressure)
+    sharp_result = solve(case, accuracy=0.05, stresses=False)
+    rounded_result = solve(replace(case, body_edge=profiles.Cylinder(0.04e-3)), accuracy=0.05, stresses=False)
+    assert np.isinf(sharp_result.peak_pressure)
+    assert "body_edge" in str(assess(sharp_result))
+    assert np.isfinite(rounded_result.peak_pressure)

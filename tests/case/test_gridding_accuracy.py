@@ -1,4 +1,4 @@
-"""The settings of studies equal those of the solver."""
+"""Defaults of study parameters against those of `solve`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contactstudy.study.parameters import PARAMETERS
 
 
 @pytest.mark.parametrize("name", ["tolerance", "stresses"])
-def test_defaults_equal_the_solver(name: str) -> None:
+def test_parameter_default_equals_default_of_solve(name: str) -> None:
     assert PARAMETERS[name].default == inspect.signature(solve).parameters[name].default
 
 

@@ -1,4 +1,4 @@
-"""Warnings of magnitudes that suggest a mistake in the unit."""
+"""Warnings of magnitudes that suggest a wrong unit."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ from contactstudy.case.magnitudes import list_unusual_magnitudes
 from contactstudy.cli import main
 from contactstudy.heat import ThermalProperties
 from contactstudy.study import Study, run_study
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 STEEL = Material(206e9, 0.3)
-TYPICAL = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
+TYPICAL_VALUES = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
 
 
 def create_case(**changes) -> Case:
-    values = TYPICAL | changes
+    values = TYPICAL_VALUES | changes
     roller = Roller(radius=values.pop("radius"), length=values.pop("length"), material=values.pop("roller", None))
     body = FiniteLengthSpace(length=values.pop("body"), material=values.pop("material"))
     return Case(body=body, roller=roller, **values)
@@ -100,7 +100,7 @@ def test_typical_cases_have_no_warning(changes) -> None:
         ({"motion": Rolling(speed=160.0)}, "entrainment_speed = 160 m/s, .*; 160 mm/s is 0.16 m/s"),
     ],
 )
-def test_unusual_values_of_a_case(changes, message: str) -> None:
+def test_unusual_case_has_warning(changes, message: str) -> None:
     assert re.search(message, "; ".join(list_unusual_magnitudes(create_case(**changes))))
 
 
@@ -166,7 +166,7 @@ def test_solve_warns_once_at_the_line_of_the_call() -> None:
 def test_plan_and_run_contain_the_warning(tmp_path: Path, capsys) -> None:
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
     assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 contacts)",)
-    (tmp_path / "small.toml").write_text(as_toml(study))
+    (tmp_path / "small.toml").write_text(format_toml(study))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert main(["plan", str(tmp_path / "small.toml"), "--out", str(tmp_path / "results")]) == 0
@@ -180,7 +180,7 @@ def test_plan_and_run_contain_the_warning(tmp_path: Path, capsys) -> None:
 def test_plan_warns_of_lengths_in_millimetres(tmp_path: Path) -> None:
     base = BASE | {"radius": 6.0, "roller_length": 14.0, "max_pressure": 1.5e9, "e_over_a": 0.0}
     plan = Study(name="mm", base=base).plan()
-    assert [question.split(",")[0] for question in plan.doubts] == [
+    assert [warning_text.split(",")[0] for warning_text in plan.doubts] == [
         "roller.radius = 6 m",
         "roller.length = 14 m",
         "body.length = 14 m",
@@ -189,7 +189,7 @@ def test_plan_warns_of_lengths_in_millimetres(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("pressure", "modulus", "rating"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
-def test_crown_for_a_wrong_unit_warns(pressure: float, modulus: float, rating: str) -> None:
+def test_crown_designed_in_a_wrong_unit_warns(pressure: float, modulus: float, rating: str) -> None:
     crown = profiles.JohnsGohar.for_pressure(1.5e9, radius=6e-3, modulus=113e9)
     wrong_crown = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
     case = create_case()

@@ -1,4 +1,4 @@
-"""Motions: prescribed values and rejected input."""
+"""Motions: prescribed values and invalid input."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def test_default_motion_is_zero() -> None:
     assert Shift(force_x=1.0, force_y=2.0).modes == ("x", "y")
 
 
-def test_full_sliding_is_the_default() -> None:
+def test_default_motion_of_case_is_sliding() -> None:
     assert create_case(Sliding()) == Case(
         body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9, friction=0.1
     )
     assert hash(create_case(Rolling(spin=1.0))) != hash(create_case(Rolling(spin=2.0)))
 
 
-def test_motion_and_force_exclude_each_other() -> None:
+def test_creepage_and_its_force_together_raise() -> None:
     with pytest.raises(InvalidInputError, match="longitudinal_creepage, force_y"):
         Rolling(longitudinal_creepage=1e-3, force_y=1.0)
     with pytest.raises(InvalidInputError, match="spin, moment_z"):
@@ -45,14 +45,14 @@ def test_motion_and_force_exclude_each_other() -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), "fast", True])
-def test_other_values_than_numbers_are_rejected(value: object) -> None:
+def test_motion_without_number_raises(value: object) -> None:
     with pytest.raises(InvalidInputError, match="longitudinal_creepage"):
         Rolling(longitudinal_creepage=value)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match="force_y"):
         Shift(force_y=value)  # type: ignore[arg-type]
 
 
-def test_motion_limits_the_friction() -> None:
+def test_negative_friction_with_rolling_raises() -> None:
     with pytest.raises(InvalidInputError, match="motion = 'rolling'"):
         create_case("rolling")  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
@@ -60,6 +60,6 @@ def test_motion_limits_the_friction() -> None:
     assert create_case(Sliding(), -0.1).friction == -0.1
 
 
-def test_entrainment_and_slide_roll_ratio():
+def test_entrainment_and_slide_roll_ratio_of_speeds():
     speeds = SurfaceSpeeds(body=2.0, roller=3.0)
     assert (speeds.entrainment, speeds.slide_roll_ratio) == (2.5, 0.4)

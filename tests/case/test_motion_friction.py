@@ -31,7 +31,7 @@ def create_case(friction: object, **arguments: object) -> Case:
     return Case(**(parameters | {"friction": friction} | arguments))  # type: ignore[arg-type]
 
 
-def test_antisymmetric_friction() -> None:
+def test_traction_of_antisymmetric_friction_is_antisymmetric() -> None:
     case = create_case(ANTISYMMETRIC_FRICTION, body=HalfSpace(material=STEEL))
     grid = choose_grid(case, cells_x=3, cells_y=8, window=1.5)
     positions = {"x": LENGTH * np.array([0.1, 0.3, 0.7, 0.9]), "y": [-2e-5, 0.0, 2e-5], "z": [2e-5]}
@@ -69,7 +69,7 @@ def test_cases_with_axial_friction_are_hashable() -> None:
     assert create_case(ANTISYMMETRIC_FRICTION) != create_case(2 * ANTISYMMETRIC_FRICTION)
 
 
-def test_error_names_the_bad_friction() -> None:
+def test_invalid_axial_friction_raises() -> None:
     with pytest.raises(InvalidInputError, match=r"friction.dims"):
         create_case(ANTISYMMETRIC_FRICTION.rename(x="y"))
     with pytest.raises(InvalidInputError, match=r"friction.x.*increasing"):
@@ -82,7 +82,7 @@ def test_error_names_the_bad_friction() -> None:
         create_case(ANTISYMMETRIC_FRICTION, coupled=True)
 
 
-def test_prescribed_gap_with_axial_friction() -> None:
+def test_contact_of_gap_with_axial_friction_is_antisymmetric() -> None:
     grid = choose_grid(create_case(0.1), cells_x=3, cells_y=8, window=1.5)
     gap = xr.DataArray(create_case(0.1).gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     body = FiniteLengthSpace(length=LENGTH, material=STEEL)

@@ -51,7 +51,7 @@ class UserProfile:
         return np.where(np.abs(x) < 0.499 * length, 1e-3 * x**2, np.inf)
 
 
-def test_user_profile_is_sampled() -> None:
+def test_user_profile_is_stored_as_samples() -> None:
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3, profile=UserProfile()), max_pressure=1e9)
     restored_profile = from_dict(json.loads(json.dumps(to_dict(case))), Case).roller.profile
@@ -59,15 +59,15 @@ def test_user_profile_is_sampled() -> None:
     assert np.allclose(restored_profile.drop(x, 1e-3), UserProfile().drop(x, 1e-3), rtol=1e-3, atol=1e-14)
 
 
-class Bowl:
+class QuarticProfile:
     """A user's profile over the effective length."""
 
     def drop(self, x, length):
         return 1e-5 * (2 * np.abs(x) / length) ** 4
 
 
-def test_user_profile_over_the_effective_length() -> None:
-    profile = profiles.EffectiveLength(Bowl(), 0.8e-3)
+def test_user_profile_over_effective_length_is_stored_as_samples() -> None:
+    profile = profiles.EffectiveLength(QuarticProfile(), 0.8e-3)
     case = Case(
         body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3, profile=profile), max_pressure=1e9
     )
@@ -77,11 +77,11 @@ def test_user_profile_over_the_effective_length() -> None:
 
 
 @pytest.mark.parametrize("table", [{}, {"kind": "Nothing"}, {"kind": "Material", "young": 1.0, "poisson": 0.3}])
-def test_other_tables_are_rejected(table: dict[str, object]) -> None:
+def test_table_of_another_class_raises(table: dict[str, object]) -> None:
     with pytest.raises(InvalidInputError, match="case = "):
         from_dict(table, Case)
 
 
 def test_samples_are_interpolated_linearly():
-    wedge = Sampled("wedge", (-0.5, 0.0, 0.5), (1e-6, 0.0, 1e-6))
-    assert wedge.drop(np.array([2.5e-3]), 10e-3).tolist() == [5e-07]
+    sampled_profile = Sampled("wedge", (-0.5, 0.0, 0.5), (1e-6, 0.0, 1e-6))
+    assert sampled_profile.drop(np.array([2.5e-3]), 10e-3).tolist() == [5e-07]

@@ -1,4 +1,4 @@
-"""Contact: effects of a free end, friction, bad input; `verification/test_suite_checks` has closed forms."""
+"""Contact: effects of a free end, friction, invalid input; `verification/test_suite_checks` has closed forms."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from contactstudy.verification import closed_forms as ref
 from contactstudy.verification.problems import LINE_LOAD
 
 
-def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
+def make_sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
     centres = window * (2 * (np.arange(cells) + 0.5) / cells - 1)
     return xr.DataArray(
         0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
@@ -31,10 +31,10 @@ def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
 
 
 def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
-    """No cell centre lies in the middle, unlike in the suite's checks."""
+    """No cell centre lies at the centre of the contact, unlike in the checks of the suite."""
     cells = 64
     radius, peak, _ = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
-    contact = solve_contact(half_space, sphere_gap(cells), load=4 / 3)
+    contact = solve_contact(half_space, make_sphere_gap(cells), load=4 / 3)
     area = float((contact["pressure"] > 0).sum()) * (3 / cells) ** 2
     assert np.sqrt(area / np.pi) == pytest.approx(radius, rel=2e-2)
     x, y = contact["x"].values[:, None], contact["y"].values
@@ -46,8 +46,8 @@ def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
 def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     contact = solve_contact(short_body, cylinder_gap(8.0, (96, 48)), load=8 * LINE_LOAD)
     assert bool(contact["converged"])
-    total = float(contact["pressure"].sum()) * (8 / 96) * (4 / 48)
-    assert total == pytest.approx(8 * LINE_LOAD, rel=1e-12)
+    total_load = float(contact["pressure"].sum()) * (8 / 96) * (4 / 48)
+    assert total_load == pytest.approx(8 * LINE_LOAD, rel=1e-12)
     assert abs(float(contact["load_error"])) < 1e-10
     assert float(contact["penetration_error"]) < 3e-6
     assert float(contact["open_pressure_error"]) == 0.0
@@ -57,18 +57,20 @@ def test_free_end_reduces_end_pressure(short_body: FiniteLengthSpace, half_space
     peaks = {}
     for cells in (64, 128):
         gap = cylinder_gap(8.0, (cells, 64))
-        free = solve_contact(short_body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
+        axial_pressure = solve_contact(short_body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
         peaks[cells] = float(
-            solve_contact(HalfSpace(material=half_space.material), _island(gap), load=8 * LINE_LOAD)["pressure"].max()
+            solve_contact(HalfSpace(material=half_space.material), surround_with_infinite_gap(gap), load=8 * LINE_LOAD)[
+                "pressure"
+            ].max()
         )
-        assert np.all(np.diff(free.values[: cells // 2]) > 0)
-        assert 0.55 < float(free[0]) < 0.72
-        assert float(free[cells // 2]) == pytest.approx(1.0239, abs=1e-3)
+        assert np.all(np.diff(axial_pressure.values[: cells // 2]) > 0)
+        assert 0.55 < float(axial_pressure[0]) < 0.72
+        assert float(axial_pressure[cells // 2]) == pytest.approx(1.0239, abs=1e-3)
     assert peaks[64] > 2.5
     assert peaks[128] > 1.3 * peaks[64]
 
 
-def _island(gap: xr.DataArray) -> xr.DataArray:
+def surround_with_infinite_gap(gap: xr.DataArray) -> xr.DataArray:
     """Surround a gap by cells with an infinite gap, which cannot touch the half-space."""
     step = float(gap.x[1] - gap.x[0])
     x = np.concatenate([gap.x[:2].values - 2 * step, gap.x.values, gap.x[-2:].values + 2 * step])
@@ -90,7 +92,7 @@ def test_end_pressure_stays_below_mid_length_pressure(length: float, poisson: fl
 
 
 def test_pressure_converges_with_cells(short_body: FiniteLengthSpace, cylinder_gap) -> None:
-    middles = [
+    mid_pressures = [
         float(
             solve_contact(short_body, cylinder_gap(8.0, cells), load=8 * LINE_LOAD)["pressure"].sel(
                 x=4, y=0, method="nearest"
@@ -98,37 +100,39 @@ def test_pressure_converges_with_cells(short_body: FiniteLengthSpace, cylinder_g
         )
         for cells in ((32, 33), (64, 65), (128, 129))
     ]
-    assert abs(middles[2] - middles[1]) < 2e-3
-    assert abs(middles[2] - middles[1]) < abs(middles[1] - middles[0])
+    assert abs(mid_pressures[2] - mid_pressures[1]) < 2e-3
+    assert abs(mid_pressures[2] - mid_pressures[1]) < abs(mid_pressures[1] - mid_pressures[0])
 
 
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
-    baseline = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
-    coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
-    assert np.allclose(baseline["traction_y"], 0.4 * baseline["pressure"])
+    uncoupled_contact = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
+    coupled_contact = solve_contact(
+        short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True)
+    )
+    assert np.allclose(uncoupled_contact["traction_y"], 0.4 * uncoupled_contact["pressure"])
 
-    def centre(contact: xr.Dataset) -> float:
+    def compute_pressure_centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
 
-    assert abs(centre(baseline)) < 1e-6
+    assert abs(compute_pressure_centre(uncoupled_contact)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
-    assert -0.2 < centre(coupled) < -0.02
-    assert bool(coupled["converged"])
-    assert float(coupled["penetration_error"]) < 1e-6
+    assert -0.2 < compute_pressure_centre(coupled_contact) < -0.02
+    assert bool(coupled_contact["converged"])
+    assert float(coupled_contact["penetration_error"]) < 1e-6
 
 
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
-    gap = sphere_gap(48)
-    baseline = solve_contact(body, gap, load=4 / 3, friction=0.3)
-    coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
-    assert np.abs(baseline["pressure"] - coupled["pressure"]).max() < 1e-5
+    gap = make_sphere_gap(48)
+    uncoupled_contact = solve_contact(body, gap, load=4 / 3, friction=0.3)
+    coupled_contact = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
+    assert np.abs(uncoupled_contact["pressure"] - coupled_contact["pressure"]).max() < 1e-5
 
 
 def test_early_stop_warns_and_is_not_converged(half_space: HalfSpace) -> None:
     with pytest.warns(ConvergenceWarning, match="max_iterations"):
-        contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
+        contact = solve_contact(half_space, make_sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
     assert not bool(contact["converged"])
 
 
@@ -136,14 +140,16 @@ def test_contact_at_window_edge_raises_error(
     half_space: HalfSpace, short_body: FiniteLengthSpace, cylinder_gap
 ) -> None:
     with pytest.raises(WindowError, match=r"y_min.*widen"):
-        solve_contact(half_space, sphere_gap(32, window=0.8), load=4 / 3)
+        solve_contact(half_space, make_sphere_gap(32, window=0.8), load=4 / 3)
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (32, 32), window=0.9), load=8 * LINE_LOAD)
 
 
-def press(coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object) -> None:
-    """Contact with the settings among the arguments."""
-    settings = ContactSettings(coupled=coupled, tolerance=tolerance, max_iterations=max_iterations)
+def solve_with_settings(
+    coupled_contact: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object
+) -> None:
+    """Contact with settings and arguments given as keywords."""
+    settings = ContactSettings(coupled=coupled_contact, tolerance=tolerance, max_iterations=max_iterations)
     solve_contact(**arguments, settings=settings)  # type: ignore[arg-type]
 
 
@@ -161,13 +167,13 @@ def press(coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 
     ],
 )
 def test_invalid_arguments_raise_error(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
-    arguments = {"body": half_space, "gap": sphere_gap(16), "load": 1.0} | change
+    arguments = {"body": half_space, "gap": make_sphere_gap(16), "load": 1.0} | change
     with pytest.raises(InvalidInputError, match=message):
-        press(**arguments)  # type: ignore[arg-type]
+        solve_with_settings(**arguments)  # type: ignore[arg-type]
 
 
 def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
-    gap = sphere_gap(16)
+    gap = make_sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
         solve_contact(half_space, gap.where(gap > 0.1), load=1.0)
     with pytest.raises(InvalidInputError, match=r"xarray\.DataArray"):
@@ -192,7 +198,7 @@ def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengt
 
 @pytest.mark.parametrize("load", [1.0, 1e45])
 def test_full_window_raises_error_without_warning(short_body, cylinder_gap, load: float) -> None:
-    """All cells of the coarse first guess are in contact and sink equally."""
+    """All cells of the coarse initial guess are in contact and have equal displacements."""
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load=load)
 
@@ -219,10 +225,10 @@ def test_too_many_cells_raise_error_before_allocation() -> None:
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.49])
-def test_strongly_coupled_contacts_keep_their_tolerance(poisson: float, cylinder_gap) -> None:
+def test_strongly_coupled_contact_meets_tolerance(poisson: float, cylinder_gap) -> None:
     body = FiniteLengthSpace(material=Material(1.0, poisson), length=8.0)
-    coupled = solve_contact(
+    coupled_contact = solve_contact(
         body, cylinder_gap(8.0, (32, 48)), load=8 * LINE_LOAD, friction=1.0, settings=ContactSettings(coupled=True)
     )
-    assert bool(coupled["converged"])
-    assert float(coupled["penetration_error"]) <= 1e-6
+    assert bool(coupled_contact["converged"])
+    assert float(coupled_contact["penetration_error"]) <= 1e-6

@@ -1,4 +1,4 @@
-"""The search on measures in closed form, without the solver."""
+"""The search for profiles with measures in closed form."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ ERROR = 0.01
 
 
 @pytest.fixture
-def solve_with(monkeypatch: pytest.MonkeyPatch):
+def install_measure(monkeypatch: pytest.MonkeyPatch):
     """Replace the solver by a function of the profile's two parameters and the case."""
 
-    def install(function):
+    def replace_solver(measure_function):
         def solve(case: Case, **settings: object) -> xr.Dataset:
             profile = case.roller.profile
-            value = function(profile.edge_drop, profile.k1, case)
+            value = measure_function(profile.edge_drop, profile.k1, case)
             result = xr.Dataset({"peak_pressure": value, "peak_pressure_error": ERROR, "tilt": case.tilt})
             result["peak_pressure"].attrs["units"] = "Pa"
             return result
 
         monkeypatch.setattr("contactstudy.design.solve", solve)
 
-    return install
+    return replace_solver
 
 
-def crown(edge_drop: float, k1: float = 1.0) -> profiles.Profile:
+def make_profile(edge_drop: float, k1: float = 1.0) -> profiles.Profile:
     return profiles.FujiwaraKawase(1e-6, edge_drop, k1)
 
 
@@ -40,13 +40,13 @@ BOUNDS = {"edge_drop": (1e-6, 1e-4)}
 TWO_BOUNDS = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
 
 
-def test_smooth_optimum(solve_with) -> None:
-    """Measure 1 + 4 s**2 in decades s: worse by two errors of 0.01 at s = 0.0707."""
-    solve_with(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    result = best_profile(CASE, crown, bounds=BOUNDS)
+def test_search_finds_optimum_and_flat_range_of_parabola(install_measure) -> None:
+    """Measure 1 + 4 s**2 of s decades; at s = 0.0707 it exceeds the minimum by two errors of 0.01."""
+    install_measure(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
+    result = best_profile(CASE, make_profile, bounds=BOUNDS)
     assert float(np.log10(result.optimum[0] / 2e-5)) == pytest.approx(0.0, abs=0.03)
-    ends = np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / 2e-5)
-    np.testing.assert_allclose(ends, [-0.0707, 0.0707], atol=0.045)
+    flat_ends = np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / 2e-5)
+    np.testing.assert_allclose(flat_ends, [-0.0707, 0.0707], atol=0.045)
     assert float(result.measure) == pytest.approx(1.0, abs=0.005)
     assert float(result.measure_error) == ERROR
     assert result.measure.attrs["units"] == "Pa"
@@ -54,81 +54,84 @@ def test_smooth_optimum(solve_with) -> None:
     assert float(result.design_measure.min()) == float(result.measure)
 
 
-@pytest.mark.parametrize("bound", [8, 9, 12, 16, 60])
-def test_number_of_designs_is_bounded(solve_with, bound: int) -> None:
-    solve_with(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    assert best_profile(CASE, crown, bounds=BOUNDS, evaluations=bound).sizes["evaluation"] <= bound
-    solve_with(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
-    result = best_profile(CASE, crown, bounds=TWO_BOUNDS, evaluations=bound + 1)
-    assert result.sizes["evaluation"] <= bound + 1
+@pytest.mark.parametrize("max_evaluations", [8, 9, 12, 16, 60])
+def test_number_of_designs_is_bounded(install_measure, max_evaluations: int) -> None:
+    install_measure(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
+    assert (
+        best_profile(CASE, make_profile, bounds=BOUNDS, evaluations=max_evaluations).sizes["evaluation"]
+        <= max_evaluations
+    )
+    install_measure(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
+    result = best_profile(CASE, make_profile, bounds=TWO_BOUNDS, evaluations=max_evaluations + 1)
+    assert result.sizes["evaluation"] <= max_evaluations + 1
     assert (result.flat_from <= result.optimum).all()
 
 
-def test_optimum_at_a_kink_of_two_cases(solve_with) -> None:
+def test_optimum_of_two_cases_equalises_measures(install_measure) -> None:
     """The loads have opposite slopes: at the optimum both measures are equal."""
     slopes = {50.0: 1.0, 100.0: -2.0}
-    solve_with(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
+    install_measure(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
     cases = [replace(CASE, max_pressure=None, load=load) for load in slopes]
-    result = best_profile(cases, crown, bounds=BOUNDS)
+    result = best_profile(cases, make_profile, bounds=BOUNDS)
     assert float(np.log10(result.optimum[0] / 1e-5)) == pytest.approx(0.0, abs=0.02)
     assert result.case_load.values.tolist() == [50.0, 100.0]
     np.testing.assert_allclose(result.case_measure.max("case"), result.design_measure)
     # The second case rises twice as fast.
-    ends = np.abs(np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / float(result.optimum[0])))
-    assert (ends < 0.08).all()
+    flat_ends = np.abs(np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / float(result.optimum[0])))
+    assert (flat_ends < 0.08).all()
 
 
-def test_optimum_of_two_parameters(solve_with) -> None:
-    solve_with(
+def test_optimum_of_two_parameters_equals_minimum(install_measure) -> None:
+    install_measure(
         lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0 + 0.5 * np.log10(drop / 1e-5)) ** 2
     )
-    result = best_profile(CASE, crown, bounds=TWO_BOUNDS, evaluations=80)
+    result = best_profile(CASE, make_profile, bounds=TWO_BOUNDS, evaluations=80)
     values = result.optimum.to_series()
     assert np.log10(values["edge_drop"] / 1e-5) == pytest.approx(0.0, abs=0.1)
     assert values["k1"] == pytest.approx(2.0, abs=0.15)
-    assert crown(**values).k1 == values["k1"]
+    assert make_profile(**values).k1 == values["k1"]
     assert result.flat_from.sel(parameter="k1") < values["k1"] < result.flat_to.sel(parameter="k1")
 
 
-def test_optimum_equals_a_brute_force_scan(solve_with) -> None:
-    def bumpy(drop: float, k1: float, case: Case) -> float:
+def test_optimum_equals_a_brute_force_scan(install_measure) -> None:
+    def measure_with_local_minima(drop: float, k1: float, case: Case) -> float:
         s = np.log10(drop / 1e-6) / 2
         return float(2 + np.cos(5 * s) + 1.5 * s)
 
-    solve_with(bumpy)
-    result = best_profile(CASE, crown, bounds=BOUNDS)
-    scan = min(bumpy(drop, 1.0, CASE) for drop in np.geomspace(1e-6, 1e-4, 2001))
+    install_measure(measure_with_local_minima)
+    result = best_profile(CASE, make_profile, bounds=BOUNDS)
+    scan = min(measure_with_local_minima(drop, 1.0, CASE) for drop in np.geomspace(1e-6, 1e-4, 2001))
     assert float(result.measure) == pytest.approx(scan, abs=ERROR)
 
 
-def test_infinite_measures_and_invalid_profiles(solve_with) -> None:
-    def singular(drop: float, k1: float, case: Case) -> float:
+def test_search_excludes_infinite_measures_and_invalid_profiles(install_measure) -> None:
+    def make_singular_measure(drop: float, k1: float, case: Case) -> float:
         if drop > 5e-5:
             raise InvalidInputError("profile", drop, "smaller")
         return np.inf if drop < 1e-5 else 1 + np.log10(drop / 1.5e-5) ** 2
 
-    solve_with(singular)
-    result = best_profile(CASE, crown, bounds=BOUNDS)
+    install_measure(make_singular_measure)
+    result = best_profile(CASE, make_profile, bounds=BOUNDS)
     assert float(result.optimum[0]) == pytest.approx(1.5e-5, rel=0.15)
     assert 0.9e-5 < float(result.flat_from[0]) <= float(result.flat_to[0]) < 5e-5
     assert np.isinf(result.design_measure).any()
 
 
-def test_optimum_on_a_bound_warns(solve_with) -> None:
-    solve_with(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
+def test_optimum_on_a_bound_warns(install_measure) -> None:
+    install_measure(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
     with pytest.warns(BoundWarning, match=r"the best edge_drop = 1e-06 lies at a bound \(1e-06 to 0.0001\)"):
-        result = best_profile(CASE, crown, bounds=BOUNDS)
+        result = best_profile(CASE, make_profile, bounds=BOUNDS)
     assert float(result.flat_from[0]) == pytest.approx(float(result.lower_bound[0]))
     assert result.at_bound.values.tolist() == [True]
 
 
-def test_cases_and_errors_of_functions(solve_with) -> None:
-    solve_with(lambda drop, k1, case: 1.0 + abs(case.tilt))
+def test_error_of_measure_function_defaults_to_accuracy(install_measure) -> None:
+    install_measure(lambda drop, k1, case: 1.0 + abs(case.tilt))
     pressures = (1e9, 2e9)
     cases = [replace(CASE, max_pressure=pressure, tilt=tilt) for pressure in pressures for tilt in (0.0, 1e-3)]
     result_with_error = best_profile(
         [*cases, replace(CASE, load_position=0.4e-3)],
-        crown,
+        make_profile,
         bounds=BOUNDS,
         measure=lambda result: (2 * result.peak_pressure, 0.5),
         evaluations=8,
@@ -141,15 +144,15 @@ def test_cases_and_errors_of_functions(solve_with) -> None:
     assert not result_with_error.at_bound.any()
     assert float(result_with_error.flat_from[0]) == pytest.approx(1e-6)
     assert float(result_with_error.flat_to[0]) == pytest.approx(1e-4)
-    plain_result = best_profile(
+    result_without_error = best_profile(
         CASE,
-        crown,
+        make_profile,
         bounds=BOUNDS,
         measure=lambda result: result.peak_pressure,
         accuracy=0.02,
         evaluations=8,
     )
-    assert float(plain_result.measure_error) == pytest.approx(0.02)
+    assert float(result_without_error.measure_error) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize(
@@ -175,13 +178,13 @@ def test_cases_and_errors_of_functions(solve_with) -> None:
         ({"measure": lambda result: np.inf}, "finite somewhere"),
     ],
 )
-def test_error_names_the_bad_argument(solve_with, arguments, message: str) -> None:
-    solve_with(lambda drop, k1, case: 1.0)
+def test_invalid_argument_raises(install_measure, arguments, message: str) -> None:
+    install_measure(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match=message):
-        best_profile(**({"cases": CASE, "profile": crown, "bounds": BOUNDS} | arguments))
+        best_profile(**({"cases": CASE, "profile": make_profile, "bounds": BOUNDS} | arguments))
 
 
-def test_bounds_without_valid_profile_are_rejected(solve_with) -> None:
-    solve_with(lambda drop, k1, case: 1.0)
+def test_bounds_without_valid_profile_are_rejected(install_measure) -> None:
+    install_measure(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match="edge_drop"):
-        best_profile(CASE, crown, bounds={"edge_drop": (-2.0, -1.0)})
+        best_profile(CASE, make_profile, bounds={"edge_drop": (-2.0, -1.0)})

@@ -1,15 +1,15 @@
 """Python and TOML blocks of README.md and of every page in docs as tests.
 
-The blocks of a page run in their order and share their names. They find
+The blocks of a page run in order and share names. Their environment contains
 
 * an empty working folder, with the study files of `studies` and a measured profile, `roller_7.csv`;
 * `result`, a small solved case;
-* after a TOML block that is a whole study: its file, its results in `results/NAME`, by the stand-in solver, and the
-  `path` of one of its cases. Other TOML blocks are parsed.
+* after a TOML block of a whole study: the file of the study, results of the stand-in solver in `results/NAME`, and the
+  `path` of one batch. Other TOML blocks are parsed.
 
 A text block that directly follows a Python block is its output: the same words, and the same numbers to a percent.
 
-A block that cannot run here has the reason in the page, on the line before it::
+A comment on the line before a block skips the block, with a reason::
 
     <!-- skip: next "needs a SLURM cluster" -->
 """
@@ -43,15 +43,15 @@ from tests.stand_in_solver import solve_fake
 
 PUNCTUATION = ",:;"  # signs that follow a number
 WHOLE_STUDY = {"name", "base", "sweep"}
-"""Keys that a TOML block of a whole study contains, unlike a part of a study."""
+"""Keys that a TOML block of a whole study contains."""
 
 
-class Fences:
+class FencedBlocks:
     """Parser of fenced blocks of one language, with any further words in their first line."""
 
     def __init__(self, language: str, evaluator: Any) -> None:
-        first_line = rf"[ \t]*\{{?[ \t]*\.?{language}\b[^\n]*$\n"
-        self._lexer = RawFencedCodeBlockLexer(re.compile(first_line, re.MULTILINE))
+        opening = rf"[ \t]*\{{?[ \t]*\.?{language}\b[^\n]*$\n"
+        self._lexer = RawFencedCodeBlockLexer(re.compile(opening, re.MULTILINE))
         self._evaluator = evaluator
 
     def __call__(self, document: Document) -> Iterable[Region]:
@@ -62,16 +62,16 @@ class Fences:
 
 
 class PrintingEvaluator(PythonEvaluator):
-    """Evaluator that keeps the output of a block."""
+    """Evaluator that records the output of a block."""
 
     def __call__(self, example: Example) -> None:
-        with contextlib.redirect_stdout(io.StringIO()) as printed:
+        with contextlib.redirect_stdout(io.StringIO()) as output:
             try:
                 super().__call__(example)
             except Exception as error:
                 # Sybil cuts the traceback of every cause and raises IndexError for a short traceback.
                 raise error from None
-        example.namespace["_printed"] = printed.getvalue()
+        example.namespace["_printed"] = output.getvalue()
 
 
 OUTPUT = re.compile(r"^```python\n(?:(?!^```).*\n)*```\n\n(```text\n((?:(?!^```).*\n)*)```)", re.MULTILINE)
@@ -88,21 +88,21 @@ class Outputs:
 
 def compare_output(example: Example) -> None:
     """Compare the shown with the printed text: words exactly, numbers to a percent."""
-    expected_words, printed = example.parsed.split(), example.namespace["_printed"].split()
-    assert len(expected_words) == len(printed), example.namespace["_printed"]
-    for first, second in zip(expected_words, printed, strict=True):
-        if first != second:
-            expected, computed = (float(word.strip(PUNCTUATION)) for word in (first, second))
-            assert expected == pytest.approx(computed, rel=0.01, abs=2e-3), (first, second)
+    expected_words, output = example.parsed.split(), example.namespace["_printed"].split()
+    assert len(expected_words) == len(output), example.namespace["_printed"]
+    for shown_word, printed_word in zip(expected_words, output, strict=True):
+        if shown_word != printed_word:
+            shown_number, printed_number = (float(word.strip(PUNCTUATION)) for word in (shown_word, printed_word))
+            assert shown_number == pytest.approx(printed_number, rel=0.01, abs=2e-3), (shown_word, printed_word)
 
 
 class ReasonedSkips(SkipParser):
-    """Skips with a reason: a skip without a reason would count as passed."""
+    """Parser of skips that requires a reason."""
 
     def __call__(self, document: Document) -> Iterable[Region]:
-        for lexed in DirectiveInHTMLCommentLexer(self.directive)(document):
-            if not re.fullmatch(r'next ".+"\s*', lexed.lexemes["arguments"] or ""):
-                line, _ = document.line_column(lexed.start).removeprefix("line ").split(",", 1)
+        for comment in DirectiveInHTMLCommentLexer(self.directive)(document):
+            if not re.fullmatch(r'next ".+"\s*', comment.lexemes["arguments"] or ""):
+                line, _ = document.line_column(comment.start).removeprefix("line ").split(",", 1)
                 raise ValueError(f'{document.path}:{line}: write <!-- skip: next "reason" -->')
         yield from super().__call__(document)
 
@@ -121,7 +121,7 @@ def run_toml(example: Example) -> None:
 
 @functools.cache
 def make_working_folder() -> Path:
-    """Folder with the files that every page uses."""
+    """Folder with the files for all pages."""
     folder = Path(tempfile.mkdtemp(prefix="contactstudy-page-"))
     (folder / "studies").mkdir()
     for study in (ROOT / "studies").glob("*.toml"):
@@ -132,25 +132,25 @@ def make_working_folder() -> Path:
     return folder
 
 
-def begin_page(names: dict[str, Any]) -> None:
+def begin_page(namespace: dict[str, Any]) -> None:
     """Change to a copy of the prepared folder."""
     folder = tempfile.mkdtemp(prefix="contactstudy-page-")
     shutil.copytree(make_working_folder(), folder, dirs_exist_ok=True)
-    names |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
+    namespace |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
     os.chdir(folder)
 
 
-def end_page(names: dict[str, Any]) -> None:
+def end_page(namespace: dict[str, Any]) -> None:
     """Leave and remove the copy."""
     from matplotlib import pyplot
 
     pyplot.close("all")
-    os.chdir(names["_before"])
-    shutil.rmtree(names["_folder"])
+    os.chdir(namespace["_before"])
+    shutil.rmtree(namespace["_folder"])
 
 
 pytest_collect_file = Sybil(
-    parsers=[Fences("python", PrintingEvaluator()), Outputs(), Fences("toml", run_toml), ReasonedSkips()],
+    parsers=[FencedBlocks("python", PrintingEvaluator()), Outputs(), FencedBlocks("toml", run_toml), ReasonedSkips()],
     path=str(ROOT),
     patterns=["docs/*.md", "docs/**/*.md"],
     filenames=["README.md"],

@@ -1,4 +1,4 @@
-"""Equations of the documentation are cited in the code, and the names of its symbols exist."""
+"""Citations of the documentation's equations in the code, and names of its symbols."""
 
 from __future__ import annotations
 
@@ -15,39 +15,39 @@ PAGES = sorted((ROOT / "docs" / "explanation").glob("*.md"))
 CODE = sorted((ROOT / "contactstudy").rglob("*.py"))
 
 
-def tags() -> list[str]:
+def list_equation_numbers() -> list[str]:
     """Numbers of all equations."""
     return list(chain.from_iterable(re.findall(r"\\tag\{(\w+)\}", page.read_text()) for page in PAGES))
 
 
-def docs_only() -> set[str]:
-    """Equations of derivations, which no line of code evaluates."""
+def list_uncited_equations() -> set[str]:
+    """Equations of derivations, marked as not evaluated in the code."""
     comments = chain.from_iterable(re.findall(r"<!-- docs only: ([\w, ]+) -->", page.read_text()) for page in PAGES)
     return set(chain.from_iterable(comment.split(", ") for comment in comments))
 
 
-def cited_equations() -> set[str]:
+def list_cited_equations() -> set[str]:
     """Equations that comments and docstrings of the package cite."""
-    values: set[str] = set()
+    cited_numbers: set[str] = set()
     for path in CODE:
         for citation in re.findall(r"\beqs?\.\s+(\(\w+\)(?:(?:,| and| to|, and)\s+\(\w+\))*)", path.read_text()):
-            values |= set(re.findall(r"\((\w+)\)", citation))
-            for first, last in re.findall(r"\((\d+)\) to \((\d+)\)", citation):
-                values |= {str(index) for index in np.arange(int(first), int(last) + 1)}
-    return values
+            cited_numbers |= set(re.findall(r"\((\w+)\)", citation))
+            for first_number, last_number in re.findall(r"\((\d+)\) to \((\d+)\)", citation):
+                cited_numbers |= {str(index) for index in np.arange(int(first_number), int(last_number) + 1)}
+    return cited_numbers
 
 
-def test_numbers_are_unique() -> None:
-    assert len(tags()) == len(set(tags()))
+def test_equation_numbers_are_unique() -> None:
+    assert len(list_equation_numbers()) == len(set(list_equation_numbers()))
 
 
-def test_equations_are_cited() -> None:
-    assert set(tags()) - cited_equations() == docs_only()
-    assert cited_equations() <= set(tags())
+def test_code_cites_all_evaluated_equations() -> None:
+    assert set(list_equation_numbers()) - list_cited_equations() == list_uncited_equations()
+    assert list_cited_equations() <= set(list_equation_numbers())
 
 
 @cache
-def identifiers() -> set[str]:
+def list_identifiers() -> set[str]:
     """Names, attributes, arguments and variables of Datasets in the package."""
     names: set[str] = set()
     for path in CODE:
@@ -65,11 +65,11 @@ def identifiers() -> set[str]:
     return names
 
 
-def test_names_of_symbols_exist() -> None:
+def test_names_in_symbol_table_exist_in_code() -> None:
     rows = re.findall(
         r"^\| [^|]*\$[^|]*\| ([^|]*) \|", (ROOT / "docs" / "explanation" / "symbols.md").read_text(), re.M
     )
-    quoted = chain.from_iterable(re.findall(r"`([^`]+)`", row) for row in rows)
-    words = set(chain.from_iterable(re.findall(r"[A-Za-z_]\w*", name) for name in quoted))
+    quoted_texts = chain.from_iterable(re.findall(r"`([^`]+)`", row) for row in rows)
+    words = set(chain.from_iterable(re.findall(r"[A-Za-z_]\w*", name) for name in quoted_texts))
     assert len(words) > 50
-    assert words - identifiers() == set()
+    assert words - list_identifiers() == set()

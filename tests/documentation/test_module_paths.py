@@ -1,4 +1,4 @@
-"""Modules that the documentation names exist."""
+"""Paths of modules in the documentation."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PAGES = [*(ROOT / "docs").rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTIN
 MODULE = re.compile(r"`((?:[a-z_]+/)+[a-z_]+\.py)`")
 
 
-def test_named_modules_exist() -> None:
+def test_module_paths_in_documentation_exist() -> None:
     modules = {path for page in PAGES for path in MODULE.findall(page.read_text(encoding="utf-8"))}
     assert len(modules) > 20
     folders = (ROOT, ROOT / "contactstudy")

@@ -1,4 +1,4 @@
-"""Files named in the README exist, and its test commands are the commands of CI."""
+"""Paths and test commands of the README."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
 
 
-def test_named_files_exist() -> None:
+def test_link_targets_exist() -> None:
     for target in re.findall(r"\]\(([^)#:]+)\)", README):
         assert (ROOT / target).exists(), target
 
 
-def test_ci_calls_the_same_test_commands() -> None:
+def test_test_commands_equal_those_of_ci() -> None:
     script = (ROOT / ".ci" / "run").read_text()
     assert '.venv/bin/pip install -e ".[dev]" && .venv/bin/pytest' in README
     assert 'pip install --quiet -e ".[$extras]"' in script

@@ -1,4 +1,4 @@
-"""The documentation: its code runs, its tables equal the tables of the code, its figures are reproducible."""
+"""Tables, figures and equation numbers of the documentation."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tests.measured import ROWS
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_the_accuracy_table_is_what_the_command_prints() -> None:
+def test_accuracy_table_has_rows_of_command() -> None:
     text = (ROOT / "docs" / "explanation" / "accuracy.md").read_text()
-    printed = re.findall(r"^\| (.*?) \|", text, re.MULTILINE)
-    assert printed[1 : 1 + len(ROWS)] == list(ROWS)
+    first_column = re.findall(r"^\| (.*?) \|", text, re.MULTILINE)
+    assert first_column[1 : 1 + len(ROWS)] == list(ROWS)
 
 
-def test_every_picture_is_in_the_gallery_with_its_code() -> None:
+def test_gallery_contains_every_picture_and_its_code() -> None:
     gallery = (ROOT / "docs" / "gallery" / "index.md").read_text()
     entry = re.compile(r'<div markdown="1" id="(\w+)">\n\n!\[[^]]*\]\((\w+)\.png\)\n\n(.*?)\n\n</div>', re.DOTALL)
     entries = entry.findall(gallery)
@@ -37,16 +37,16 @@ def test_pages_show_pictures_with_links_to_their_scripts() -> None:
             assert (ROOT / "docs" / "gallery" / f"{name}.py").exists()
 
 
-def test_figures_are_as_new_as_their_code() -> None:
+def test_stored_digests_of_figures_equal_digests_of_code() -> None:
     gallery = ROOT / "docs" / "gallery"
     digests = runpy.run_path(str(gallery / "figures.py"))["compute_hashes"]()
     stored_digests = json.loads((gallery / "figures.json").read_text())
-    old = sorted(name for name, value in digests.items() if stored_digests.get(name) != value)
-    assert not old, f"python docs/gallery/figures.py {' '.join(old)}"
+    outdated_figures = sorted(name for name, value in digests.items() if stored_digests.get(name) != value)
+    assert not outdated_figures, f"python docs/gallery/figures.py {' '.join(outdated_figures)}"
     assert digests.keys() == {path.stem for path in gallery.glob("*.png")}
 
 
-def test_every_marked_table_is_known() -> None:
+def test_every_table_mark_has_a_generator() -> None:
     source = (ROOT / "docs" / "_site" / "generated_tables.py").read_text()
     for page in (ROOT / "docs").rglob("*.md"):
         for name in re.findall(r"^<!-- made: ([\w-]+) -->$", page.read_text(), re.MULTILINE):

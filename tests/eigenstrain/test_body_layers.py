@@ -1,4 +1,4 @@
-"""Eigenstrains that change along y: one wave, the plane problem, layers that do not change."""
+"""Eigenstrains periodic along y: short waves, a rectangle in plane strain, uniform layers."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_uniform_strain_has_stress_of_layers() -> None:
 
 
 def test_short_waves_have_no_stress_along_z() -> None:
-    """Between planes close together the traction on the planes vanishes, and the planes prevent strains in them."""
+    """Short waves along y: the traction on planes y = const vanishes, and strains within these planes are prevented."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
     computed = PeriodicLayers(TEST_MATERIAL, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
@@ -64,12 +64,12 @@ def test_short_waves_have_no_stress_along_z() -> None:
 def test_reversed_path_mirrors_stresses() -> None:
     """A reversal of the path changes the sign of the shears."""
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
-    mirrored = strain[:, ::-1].copy()
-    mirrored[[XY, YZ]] *= -1
-    original, mirrored_stresses = (
-        PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored)
+    mirrored_strain = strain[:, ::-1].copy()
+    mirrored_strain[[XY, YZ]] *= -1
+    stresses, mirrored_stresses = (
+        PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(eigenstrain) for eigenstrain in (strain, mirrored_strain)
     )
     mirrored_stresses[[XY, YZ]] *= -1
-    assert np.allclose(original, mirrored_stresses[:, ::-1], atol=1e-9)
-    falling = PeriodicLayers(TEST_MATERIAL, EDGES, 16, -0.2).stresses(strain[:, ::-1])
-    assert np.allclose(original, falling[:, ::-1], atol=1e-9)
+    assert np.allclose(stresses, mirrored_stresses[:, ::-1], atol=1e-9)
+    reversed_step_stresses = PeriodicLayers(TEST_MATERIAL, EDGES, 16, -0.2).stresses(strain[:, ::-1])
+    assert np.allclose(stresses, reversed_step_stresses[:, ::-1], atol=1e-9)

@@ -1,4 +1,4 @@
-"""A study for the page: pressures, words and friction, of which one value fails."""
+"""A study for the page: pressures, profiles by name, and two frictions, one of which fails."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ SWEEP = {
 }
 
 
-def free_port() -> int:
-    """Port that no server uses now."""
-    with socket.socket() as bound:
-        bound.bind(("127.0.0.1", 0))
-        return int(bound.getsockname()[1])
+def find_free_port() -> int:
+    """Port without a server."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
 
 
 @pytest.fixture(scope="session")

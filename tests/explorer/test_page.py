@@ -1,4 +1,4 @@
-"""Page of the explorer: figures and numbers of chosen cases, from files and from an opened study."""
+"""Page of the explorer: figures and numbers of selected cases, from files and from an opened study."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ SOURCES: dict[str, Callable[[Path], Cases]] = {
 }
 
 
-def new_page(cases: Cases) -> Page:
-    """Page of some cases; panel, which takes seconds, is imported by the tests of pages only."""
+def make_page(cases: Cases) -> Page:
+    """Page of cases; the import of panel takes seconds and is limited to tests of pages."""
     from contactstudy.explorer.page import Page
 
     return Page(cases)
@@ -56,22 +56,22 @@ def new_page(cases: Cases) -> Page:
 
 @pytest.fixture
 def page(request: pytest.FixtureRequest, folder: Path) -> Page:
-    """Page of the files, or of the source in the test's parameter."""
-    return new_page(SOURCES[getattr(request, "param", "files")](folder))
+    """Page of a study's files, or of the source in the parameter of the test."""
+    return make_page(SOURCES[getattr(request, "param", "files")](folder))
 
 
 any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
-"""Parameter for tests of the fields and the status of a case."""
+"""Parameter of tests that read fields and status of a case."""
 
 
-def largest_drawn(page: Page) -> tuple[float, float]:
+def compute_max_drawn_pressures(page: Page) -> tuple[float, float]:
     """Largest pressure drawn along the axis, and on the top."""
     axial_data = page.axial._lines[0].data["p"]
     (picture,) = page.surface_figures[0]._source.data["image"]
     return float(np.nanmax(axial_data)), float(picture.max())
 
 
-def test_choices_of_swept_parameters(page: Page) -> None:
+def test_page_has_choices_of_swept_parameters(page: Page) -> None:
     assert list(page.choices[0]) == ["max_pressure", "friction", "profile"]
     assert list(page.choices[0]["max_pressure"].options) == ["1 GPa", "1.25 GPa", "1.5 GPa"]
     assert list(page.choices[0]["profile"].options) == ["cylinder", "rounded"]
@@ -80,17 +80,17 @@ def test_choices_of_swept_parameters(page: Page) -> None:
 
 @any_source
 def test_figures_follow_chosen_case(page: Page) -> None:
-    first_maximum = largest_drawn(page)
+    initial_maxima = compute_max_drawn_pressures(page)
     assert ">1 GPa<" in page.table.object
     page.choices[0]["max_pressure"].value = 2
     assert ">1.5 GPa<" in page.table.object
-    assert largest_drawn(page)[0] == pytest.approx(1.5 * first_maximum[0], rel=0.05)
+    assert compute_max_drawn_pressures(page)[0] == pytest.approx(1.5 * initial_maxima[0], rel=0.05)
     assert page.study._case_marks.data["x"] == [1.5]
     page.units.value = True
-    assert largest_drawn(page)[0] == pytest.approx(first_maximum[0] / 1000, rel=0.05)
+    assert compute_max_drawn_pressures(page)[0] == pytest.approx(initial_maxima[0] / 1000, rel=0.05)
 
 
-def test_common_colours_of_two_cases(page: Page) -> None:
+def test_two_cases_share_colours(page: Page) -> None:
     assert not page.panes[2].visible
     assert not page.axial._legend.visible
     page.compare.value = True
@@ -103,7 +103,7 @@ def test_common_colours_of_two_cases(page: Page) -> None:
     assert ">1.5 GPa<" in page.table.object
 
 
-def test_common_axes_of_two_cases(page: Page) -> None:
+def test_two_cases_share_axes(page: Page) -> None:
     page.compare.value = True
     page.choices[1]["max_pressure"].value = 2
     for figures in (page.surface_figures, page.plane_figures):
@@ -119,18 +119,18 @@ def test_common_axes_of_two_cases(page: Page) -> None:
             assert y + height <= max(axis_spans[0])
 
 
-def test_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
+def test_page_contains_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
     assert ">12 cases<" in page.view()[0].object
-    assert ">1 case<" in new_page(open_cases(case_result)).view()[0].object
+    assert ">1 case<" in make_page(open_cases(case_result)).view()[0].object
     status = page.cases.scalars["status"].astype(object)
     status[0, 0, 0] = "excluded"
     scalars = page.cases.scalars.assign(status=status.astype(str))
-    reduced_page = new_page(Cases(scalars, page.cases.load, page.cases.title))
+    reduced_page = make_page(Cases(scalars, page.cases.load, page.cases.title))
     assert ">11 cases<" in reduced_page.view()[0].object
 
 
 @any_source
-def test_failed_case(page: Page) -> None:
+def test_failed_case_has_message_and_no_figures(page: Page) -> None:
     page.choices[0]["friction"].value = 1
     assert ">failed<" in page.table.object
     assert "This case failed. WindowError: this friction fails in tests" in page.table.object
@@ -149,16 +149,16 @@ def test_failed_case(page: Page) -> None:
     assert [pane.visible for pane in page.panes] == [True, True, False, True, False, True]
 
 
-def test_study_without_surfaces(tmp_path: Path) -> None:
+def test_study_without_surfaces_has_numbers_only(tmp_path: Path) -> None:
     run_study(small_study(level="summary"), tmp_path, workers=0, solver=solve_fake, progress=False)
-    page = new_page(open_cases(tmp_path))
+    page = make_page(open_cases(tmp_path))
     assert "stores no surfaces of this case, only its numbers" in page.table.object
     assert [pane.visible for pane in page.panes] == [False, False, False, False, False, True]
 
 
-def test_case_without_stresses(page: Page) -> None:
-    without_stresses = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
-    reduced_page = new_page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
+def test_case_without_stresses_has_no_plane(page: Page) -> None:
+    case_without_stresses = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
+    reduced_page = make_page(Cases(page.cases.scalars, lambda index: case_without_stresses, page.cases.title))
     assert "The stresses are not stored." in reduced_page.table.object
     assert [pane.visible for pane in reduced_page.panes] == [True, True, False, False, False, True]
     assert not reduced_page.plane.visible
@@ -168,7 +168,7 @@ def test_case_without_stresses(page: Page) -> None:
     assert [pane.visible for pane in reduced_page.panes] == [True, True, False, False, False, True]
 
 
-def test_numbers_by_subject(page: Page) -> None:
+def test_numbers_are_grouped_by_subject(page: Page) -> None:
     groups = page.number.groups
     assert list(groups) == [subject for subject in SUBJECTS if subject in groups]
     assert list(groups)[:2] == ["pressure", "stresses"]
@@ -183,13 +183,13 @@ def test_numbers_by_subject(page: Page) -> None:
     assert all(name.endswith("_") or specification(name) for name in listed_names)
 
 
-def test_error_bars_and_open_marks(page: Page) -> None:
+def test_figure_has_error_bars_and_open_marks(page: Page) -> None:
     from contactstudy.explorer.figures import NEUTRAL_COLOR
 
     scalars = page.cases.scalars
     peak = scalars["peak_pressure"]
     error = (0.1 * peak).where(scalars["max_pressure"] > 1.1e9, np.inf)
-    error_page = new_page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
+    error_page = make_page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
     data = error_page.study._line.data
     np.testing.assert_allclose(data["high"][1:], 1.1 * data["v"][1:])
     np.testing.assert_allclose(data["low"][1:], 0.9 * data["v"][1:])
@@ -213,10 +213,10 @@ def test_planes_equal_analysis_cuts(folder: Path) -> None:
     assert image.position == "y = 0 mm"
     value, x, z = image.largest
     assert value == pytest.approx(float(expected.max()) / 1e6)
-    across, down = (
+    column_x, row_z = (
         int(np.abs(case.points[axis] - 1e-3 * position).argmin()) for axis, position in (("x", x), ("z", z))
     )
-    assert float(expected[across, down]) == float(expected.max())
+    assert float(expected[column_x, row_z]) == float(expected.max())
     for kind in PLANES[1:]:
         image = plane_image(case, scale, limits, kind, 0.0)
         assert image is not None
@@ -225,7 +225,7 @@ def test_planes_equal_analysis_cuts(folder: Path) -> None:
 
 
 @any_source
-def test_stress_measures_of_the_plane(page: Page, case_result: xr.Dataset) -> None:
+def test_plane_has_selected_stress_measure(page: Page, case_result: xr.Dataset) -> None:
     from contactstudy.explorer.page import MEASURES
 
     titles = {}
@@ -240,9 +240,11 @@ def test_stress_measures_of_the_plane(page: Page, case_result: xr.Dataset) -> No
 
 
 def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
-    singular = case_result[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(end_pressure_first=np.inf)
+    singular_result = case_result[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(
+        end_pressure_first=np.inf
+    )
     x = np.linspace(float(case_result.x[0]), float(case_result.x[-1]), 400)
-    case = CaseFields(singular.interp(x=x).drop_vars("x_bounds", errors="ignore"))
+    case = CaseFields(singular_result.interp(x=x).drop_vars("x_bounds", errors="ignore"))
     scale = choose_scale(case, relative=True)
     line = axial_line(case, scale, region_limits(case, REGIONS[0]))
     assert len(line.singular_ends) == 1
@@ -279,24 +281,24 @@ def test_notebook_receives_updates(folder: Path, monkeypatch: pytest.MonkeyPatch
     from panel.io.model import add_to_doc
     from pyviz_comms import Comm
 
-    pushed_panes = []
+    sent_messages = []
 
-    class Spy(Comm):
+    class RecordingComm(Comm):
         _comm = property(lambda self: True, lambda self, value: None)  # the connection is open
 
         def send(self, data=None, metadata=None, buffers=()):
-            pushed_panes.append(data)
+            sent_messages.append(data)
 
-    page = new_page(open_cases(folder))
-    view, document, comm = page.view(), Document(), Spy()
+    page = make_page(open_cases(folder))
+    view, document, comm = page.view(), Document(), RecordingComm()
     root = view.get_root(document, comm)
     add_to_doc(root, document, hold=True)
     monkeypatch.setitem(pn.state._views, root.ref["id"], (view, root, document, comm))
     page.choices[0]["max_pressure"].value = 1
-    assert any("ModelChanged" in str(message) for message in pushed_panes)
+    assert any("ModelChanged" in str(message) for message in sent_messages)
 
 
-def test_explore(folder: Path, case_result: xr.Dataset) -> None:
+def test_explore_accepts_folder_study_and_case(folder: Path, case_result: xr.Dataset) -> None:
     assert type(explore(folder)).__name__ == "Column"
     assert type(open_study(folder).contact.explore()).__name__ == "Column"
     assert type(case_result.contact.explore()).__name__ == "Column"
@@ -304,7 +306,7 @@ def test_explore(folder: Path, case_result: xr.Dataset) -> None:
         explore(3)  # type: ignore[arg-type]
 
 
-def test_missing_extra(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+def test_missing_panel_raises(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     import panel as pn
 
     monkeypatch.setattr(server, "find_spec", lambda name: None)
@@ -313,7 +315,7 @@ def test_missing_extra(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     assert sys.modules["panel"] is pn
 
 
-def test_taken_port() -> None:
+def test_used_port_raises() -> None:
     import socket
 
     with socket.socket() as listener:
@@ -338,7 +340,7 @@ def test_unbounded_values_are_triangles() -> None:
     assert figure.figure.y_range.end > 1.0
 
 
-def test_mark_of_rounding() -> None:
+def test_rounding_mark_has_remark() -> None:
     from contactstudy.explorer.page import _format_number
     from contactstudy.report.tables import Quantity
 

@@ -1,4 +1,4 @@
-"""The page in a browser: no requests to other hosts, figures, a slider, two widths of the window."""
+"""The page in a browser: slider, figures, two window widths, and no requests to other hosts."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser import browser, chromium, open_served
-from tests.explorer.conftest import free_port, needs_panel
+from tests.browser import browser, find_chromium, open_served
+from tests.explorer.conftest import find_free_port, needs_panel
 
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
 
 pytestmark = [
     needs_panel,
     pytest.mark.browser,
-    pytest.mark.skipif(chromium() is None, reason="Chromium is not installed"),
+    pytest.mark.skipif(find_chromium() is None, reason="Chromium is not installed"),
 ]
 
 
 @pytest.fixture(scope="module")
 def address(folder: Path) -> Iterator[str]:
     command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder), "--no-browser"]
-    command += ["--port", str(free_port())]
+    command += ["--port", str(find_free_port())]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
             assert server.stdout is not None
@@ -35,7 +35,7 @@ def address(folder: Path) -> Iterator[str]:
             server.terminate()
 
 
-def test_page_follows_widgets(address: str) -> None:
+def test_page_updates_after_slider_and_makes_no_external_requests(address: str) -> None:
     with browser(1400, 900) as page:
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))

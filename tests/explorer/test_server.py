@@ -1,4 +1,4 @@
-"""Server: imports, refused folders, access by host, origin and token."""
+"""Server: imports, invalid folders, access by host, origin and token."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ import pytest
 from contactstudy import ContactStudyError, InvalidInputError
 from contactstudy.explorer import serve
 from contactstudy.study import StudyFileError
-from tests.explorer.conftest import free_port, needs_panel
+from tests.explorer.conftest import find_free_port, needs_panel
 
 pytestmark = needs_panel
 
-SCRIPT_WITHOUT_PANEL = """
+IMPORT_SCRIPT = """
 import sys
 import contactstudy.cli, contactstudy.explorer
 slow = {"numpy", "pandas", "xarray", "panel"} & set(sys.modules)
 assert slow <= {"numpy"}, slow
 """
 
-WITHOUT_DASK = """
+SCRIPT_WITHOUT_DASK = """
 import sys
 sys.modules["dask"] = None
 from contactstudy.explorer.cases import open_cases
@@ -42,15 +42,15 @@ assert "distributed" not in sys.modules
 
 
 @pytest.mark.system
-def test_page_without_dask(folder: Path) -> None:
-    subprocess.run([sys.executable, "-c", WITHOUT_DASK, str(folder)], check=True)
+def test_page_works_without_dask(folder: Path) -> None:
+    subprocess.run([sys.executable, "-c", SCRIPT_WITHOUT_DASK, str(folder)], check=True)
 
 
-def test_light_imports() -> None:
-    subprocess.run([sys.executable, "-c", SCRIPT_WITHOUT_PANEL], check=True)
+def test_server_imports_no_slow_package() -> None:
+    subprocess.run([sys.executable, "-c", IMPORT_SCRIPT], check=True)
 
 
-def test_folder_without_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_folder_without_study_raises(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(StudyFileError, match=r"study\.json"):
         serve(tmp_path, show=False)
     with pytest.raises(StudyFileError, match="nowhere"):
@@ -61,7 +61,7 @@ def test_folder_without_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("content", ["{", json.dumps({"name": "wrong", "base": {"no_such_parameter": 1}})])
-def test_unreadable_study(tmp_path: Path, content: str) -> None:
+def test_unreadable_study_raises(tmp_path: Path, content: str) -> None:
     (tmp_path / "study.json").write_text(content)
     with pytest.raises(ContactStudyError, match=r"study\.json"):
         serve(tmp_path, show=False)
@@ -71,7 +71,7 @@ def test_unreadable_study(tmp_path: Path, content: str) -> None:
 @pytest.fixture(scope="module")
 def server_port(folder: Path) -> Iterator[tuple[int, str]]:
     """Port and token of a server."""
-    port = free_port()
+    port = find_free_port()
     command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder), "--no-browser"]
     command += ["--port", str(port), "--host", "proxy.example"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
@@ -84,7 +84,7 @@ def server_port(folder: Path) -> Iterator[tuple[int, str]]:
             server.terminate()
 
 
-def request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
+def send_request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
     with closing(http.client.HTTPConnection("localhost", port, timeout=200)) as connection:
         connection.request("GET", path, headers=headers)
         response = connection.getresponse()
@@ -101,33 +101,33 @@ WEBSOCKET_HEADERS = {
 
 
 @pytest.mark.system
-def test_hosts_and_tokens(server_port: tuple[int, str]) -> None:
+def test_server_requires_known_host_and_token(server_port: tuple[int, str]) -> None:
     port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     allowed_hosts = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
     for host in allowed_hosts:
-        assert request(port, "/", Host=host, **cookie).status == 200, host
+        assert send_request(port, "/", Host=host, **cookie).status == 200, host
     for host in ("rebound.example", f"rebound.example:{port}", "localhost.example", "192.168.0.7", "", "[::1"):
         for path in ("/", f"/?token={token}", "/ws"):
-            assert request(port, path, Host=host, **cookie).status == 403, (host, path)
+            assert send_request(port, path, Host=host, **cookie).status == 403, (host, path)
     for headers in ({}, {"Cookie": f"contactstudy-{port}=wrong"}, {"Cookie": "other=1"}):
         for path in ("/", "/?token=wrong", "/ws", "/static/js/bokeh.min.js"):
-            assert request(port, path, Host=f"localhost:{port}", **headers).status == 403, (headers, path)
-    response = request(port, f"/?token={token}", Host=f"localhost:{port}")
+            assert send_request(port, path, Host=f"localhost:{port}", **headers).status == 403, (headers, path)
+    response = send_request(port, f"/?token={token}", Host=f"localhost:{port}")
     assert (response.status, response.headers["Location"]) == (302, "/")
     assert response.headers["Set-Cookie"].startswith(cookie["Cookie"])
     assert "HttpOnly" in response.headers["Set-Cookie"]
 
 
 @pytest.mark.system
-def test_origin_of_a_websocket(server_port: tuple[int, str]) -> None:
+def test_websocket_requires_same_origin(server_port: tuple[int, str]) -> None:
     port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     for host, origin in (("localhost:9999", "http://rebound.example"), ("rebound.example", "http://rebound.example")):
-        assert request(port, "/ws", Host=host, Origin=origin, **cookie, **WEBSOCKET_HEADERS).status == 403
+        assert send_request(port, "/ws", Host=host, Origin=origin, **cookie, **WEBSOCKET_HEADERS).status == 403
     forwarded_headers = {"Host": "localhost:9999", **cookie}
-    page = request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
+    page = send_request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
     session = page.partition('"token":"')[2].partition('"')[0]
     protocol = {"Origin": "http://localhost:9999", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
-    assert request(port, "/ws", **forwarded_headers, **protocol, **WEBSOCKET_HEADERS).status == 101
-    assert request(port, "/ws", Host="localhost:9999", **protocol, **WEBSOCKET_HEADERS).status == 403
+    assert send_request(port, "/ws", **forwarded_headers, **protocol, **WEBSOCKET_HEADERS).status == 101
+    assert send_request(port, "/ws", Host="localhost:9999", **protocol, **WEBSOCKET_HEADERS).status == 403

@@ -1,4 +1,4 @@
-"""Tables and CSV."""
+"""Tables of results and their CSV files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from contactstudy.errors import StoreError
 from contactstudy.export import csv_text, headings
 
 
-def test_a_line_as_csv(case_result: xr.Dataset, tmp_path) -> None:
+def test_csv_of_line_equals_line_of_analysis(case_result: xr.Dataset, tmp_path) -> None:
     line = ((0.26e-3, 0, 0), (0.26e-3, 0, 90e-6))
     path = export.to_csv(case_result, tmp_path / "depth.csv", ["von_mises", "tresca"], line=line, points=4)
     with path.open(newline="") as file:
@@ -25,7 +25,7 @@ def test_a_line_as_csv(case_result: xr.Dataset, tmp_path) -> None:
     assert [float(row["tresca [Pa]"]) for row in rows] == pytest.approx(cut["tresca"].values, rel=1e-12)
 
 
-def test_all_points_of_a_variable(case_result: xr.Dataset) -> None:
+def test_table_of_variable_has_all_points(case_result: xr.Dataset) -> None:
     table = export.to_table(case_result, "pressure")
     assert table.columns.tolist() == ["x [m]", "y [m]", "pressure [Pa]"]
     assert np.array_equal(
@@ -33,7 +33,7 @@ def test_all_points_of_a_variable(case_result: xr.Dataset) -> None:
     )
 
 
-def test_table_of_analysis_results(case_result: xr.Dataset) -> None:
+def test_table_of_analysis_results_contains_columns_with_units(case_result: xr.Dataset) -> None:
     table = export.to_table(analysis.slices(case_result, 7))
     assert len(table) == 7
     assert "half_width [m] (error not estimated)" in table
@@ -44,7 +44,7 @@ def test_table_of_analysis_results(case_result: xr.Dataset) -> None:
     assert "von_mises" in export.to_table(analysis.normalized(case_result), "von_mises")
 
 
-def test_a_case_of_a_study(study_dataset: xr.Dataset) -> None:
+def test_table_of_study_case_has_no_padding(study_dataset: xr.Dataset) -> None:
     study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
     table = export.to_table(study_case, "pressure")
     assert table.notnull().all(axis=None)
@@ -62,19 +62,19 @@ def test_a_case_of_a_study(study_dataset: xr.Dataset) -> None:
         ({"line": ((0, 0, 0), (1, 0, 0))}, "within the result"),
     ],
 )
-def test_bad_input(case_result: xr.Dataset, settings: dict, message: str) -> None:
+def test_invalid_argument_raises(case_result: xr.Dataset, settings: dict, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         export.to_table(case_result, **settings)
 
 
-def test_several_cases_raise(study_dataset: xr.Dataset, tmp_path) -> None:
+def test_csv_of_several_cases_raises(study_dataset: xr.Dataset, tmp_path) -> None:
     with pytest.raises(InvalidInputError, match="single case"):
         export.to_csv(study_dataset, tmp_path / "a.csv", "pressure")
     with pytest.raises(InvalidInputError, match="path"):
         export.to_csv(study_dataset, None)  # type: ignore[arg-type]
 
 
-def test_unwritable_file(case_result: xr.Dataset, tmp_path) -> None:
+def test_unwritable_file_raises(case_result: xr.Dataset, tmp_path) -> None:
     with pytest.raises(StoreError, match="cannot write"):
         export.to_csv(case_result, tmp_path / "nowhere" / "a.csv", "pressure")
     with pytest.raises(StoreError, match="cannot write"):
@@ -82,7 +82,7 @@ def test_unwritable_file(case_result: xr.Dataset, tmp_path) -> None:
 
 
 @pytest.mark.parametrize("write", [export.to_csv, report.write, plots.save])
-def test_no_link_is_followed(case_result: xr.Dataset, tmp_path, write) -> None:
+def test_link_is_replaced_and_its_target_unchanged(case_result: xr.Dataset, tmp_path, write) -> None:
     suffix = {"to_csv": ".csv", "write": ".html", "save": ".png"}[write.__name__]
     target, link = tmp_path / "outside.txt", tmp_path / "folder" / f"result{suffix}"
     target.write_text("untouched")
@@ -105,9 +105,9 @@ def test_failed_write_keeps_previous_content(tmp_path) -> None:
     assert path.read_text() == "previous"
 
 
-def test_headings_and_texts_of_a_spreadsheet() -> None:
-    marked = ((), 1e-4, {"error_kind": "not estimated"})
-    dataset = xr.Dataset({"peak_pressure": 1e9, "friction": 0.1, "half_width": marked})
+def test_csv_escapes_formulas_and_headings_mark_missing_errors() -> None:
+    half_width = ((), 1e-4, {"error_kind": "not estimated"})
+    dataset = xr.Dataset({"peak_pressure": 1e9, "friction": 0.1, "half_width": half_width})
     expected = {"friction": "friction", "half_width": "half_width [m] (error not estimated)"}
     assert headings(dataset, ["friction", "half_width"]) == expected
     table = pd.DataFrame({"profile": ["=1+1", "sharp"], "load": [-1.0, 2.0]})

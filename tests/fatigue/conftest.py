@@ -13,16 +13,16 @@ from contactstudy.arrays.variables import STRESSES
 
 @pytest.fixture(scope="session")
 def cycle() -> Callable[..., xr.Dataset]:
-    """Make a history along y from components given as sequences; the others are zero."""
+    """Make a history along y from components given as sequences; other components are zero."""
 
-    def build(**components: object) -> xr.Dataset:
+    def make_history(**components: object) -> xr.Dataset:
         values = {name: np.asarray(value, dtype=float) for name, value in components.items()}
         count = next(iter(values.values())).size
-        zero = np.zeros(count)
+        zeros = np.zeros(count)
         y = np.linspace(-1, 1, count)
-        return xr.Dataset({name: ("y", values.get(name, zero)) for name in STRESSES}, coords={"y": y})
+        return xr.Dataset({name: ("y", values.get(name, zeros)) for name in STRESSES}, coords={"y": y})
 
-    return build
+    return make_history
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Constants of the criteria: each criterion equals its limit in bending and in torsion."""
+"""Limits and constants of the criteria."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Smallest balls: exact for known shapes, and minimal around any points."""
+"""Smallest enclosing balls: exact for known shapes, minimal around random points."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def is_minimal(points: Array, centre: Array, radius: float) -> bool:
 
 
 @pytest.mark.parametrize("axes", [1, 2, 3, 5])
-def test_vertices_of_a_simplex_support_the_ball(axes: int) -> None:
+def test_ball_of_simplex_is_circumscribed(axes: int) -> None:
     """The vertices, on a unit sphere, support the ball."""
     vertices = np.eye(axes + 1) - 1 / (axes + 1)
     basis = np.linalg.svd(vertices)[2][:axes]
@@ -35,7 +35,7 @@ def test_vertices_of_a_simplex_support_the_ball(axes: int) -> None:
     assert centre == pytest.approx(np.full((1, axes), 3.0), rel=1e-9)
 
 
-def test_circle_in_five_dimensions() -> None:
+def test_ball_of_circle_has_radius_of_circle() -> None:
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     points = np.zeros((1, 40, 5))
     points[0, :, 1], points[0, :, 3] = np.cos(angle), np.sin(angle)
@@ -44,7 +44,7 @@ def test_circle_in_five_dimensions() -> None:
     assert np.abs(centre).max() < 1e-9
 
 
-def test_point_and_line() -> None:
+def test_ball_of_line_has_half_length() -> None:
     line = np.linspace(0, 1, 7)[:, None] * np.array([3.0, 4.0, 0.0, 0.0, 0.0])
     _, radius = enclosing_balls(np.stack([np.full((7, 5), 2.0), line]))
     assert radius == pytest.approx([0.0, 2.5])
@@ -62,5 +62,5 @@ def test_balls_of_many_random_paths_are_minimal() -> None:
     rng = np.random.default_rng(1)
     points = np.cumsum(rng.normal(size=(60, 90, 5)), axis=1) * 10.0 ** rng.integers(-3, 9, (60, 1, 1))
     centre, radius = enclosing_balls(points)
-    for path, ball_centre, size in zip(points, centre, radius, strict=True):
-        assert is_minimal(path, ball_centre, size)
+    for path, ball_centre, ball_radius in zip(points, centre, radius, strict=True):
+        assert is_minimal(path, ball_centre, ball_radius)

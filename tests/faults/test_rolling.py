@@ -1,4 +1,4 @@
-"""A killed and resumed rolling study; the command compares 500 cases."""
+"""A killed and resumed rolling study."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def test_rolling_study_has_requested_size() -> None:
 @pytest.mark.system
 def test_killed_rolling_run_equals_undisturbed_run(tmp_path: Path) -> None:
     study = rolling.rolling_study(6)
-    undisturbed_study = rolling.run(study, tmp_path / "undisturbed", 0)
+    undisturbed_study = rolling.run_study(study, tmp_path / "undisturbed", 0)
     assert bool(undisturbed_study["converged"].all())
-    assert not rolling.different(undisturbed_study, rolling.run(study, tmp_path / "killed", 2, 2))
-    changed_names = undisturbed_study.assign(force_y=undisturbed_study["force_y"] + 1e-12)
-    assert rolling.different(undisturbed_study, changed_names) == ["force_y"]
+    assert not rolling.list_differing_variables(undisturbed_study, rolling.run_study(study, tmp_path / "killed", 2, 2))
+    changed_study = undisturbed_study.assign(force_y=undisturbed_study["force_y"] + 1e-12)
+    assert rolling.list_differing_variables(undisturbed_study, changed_study) == ["force_y"]

@@ -1,4 +1,4 @@
-"""The page contains the table of faults, and a scenario counts failures."""
+"""Table of faults in the page, and counts of failed trials."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ PAGE = ROOT / "docs" / "explanation" / "reliability.md"
 
 @pytest.fixture(scope="module")
 def undisturbed() -> xr.Dataset:
-    return studies.undisturbed_values()
+    return studies.compute_undisturbed_values()
 
 
 def test_table_replaces_previous_table(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
-    for passed in (1, 2):
-        write_table(page, [Row("kill", 2, passed, "all")])
+    for passed_trials in (1, 2):
+        write_table(page, [Row("kill", 2, passed_trials, "all")])
     text = page.read_text()
     assert text.startswith("before\n\n")
     assert text.endswith("\n\nafter\n")
@@ -38,19 +38,19 @@ def test_page_contains_table_markers() -> None:
 
 
 @pytest.mark.system
-def test_faults_hold(undisturbed: xr.Dataset) -> None:
+def test_study_survives_every_fault(undisturbed: xr.Dataset) -> None:
     for row in (
-        scenarios.damaged_files(undisturbed, len(scenarios.DAMAGES)),
-        scenarios.kills(undisturbed, 1),
-        scenarios.kills(undisturbed, 1, workers=2),
-        scenarios.clock_steps(undisturbed, 1),
-        hosts.two_systems(undisturbed, 1),
+        scenarios.damage_batches(undisturbed, len(scenarios.DAMAGES)),
+        scenarios.kill_runs(undisturbed, 1),
+        scenarios.kill_runs(undisturbed, 1, workers=2),
+        scenarios.shift_clock(undisturbed, 1),
+        hosts.run_on_two_hosts(undisturbed, 1),
     ):
         assert row.passed == row.trials, row
 
 
 @pytest.mark.system
-def test_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
+def test_trial_with_deleted_batch_fails(undisturbed: xr.Dataset, monkeypatch) -> None:
     monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other_batch_path: path.unlink(),))
-    monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
-    assert scenarios.damaged_files(undisturbed, 1).passed == 0
+    monkeypatch.setattr(studies, "count_damaged_batches", lambda folder: 1)
+    assert scenarios.damage_batches(undisturbed, 1).passed == 0

@@ -1,4 +1,4 @@
-"""Displacements inside the body: Hooke's law with the stresses, displacement of the top, references."""
+"""Displacements inside the body: Hooke's law with the stresses, displacement of the top, reference distance."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def eccentric_load(on_cells) -> xr.DataArray:
     return on_cells(lambda x, y: np.sqrt(np.maximum(1 - (x - 1.3) ** 2 - y**2, 0.0)), (0.0, 4.0), (-1.5, 1.5), (64, 48))
 
 
-def strain_of(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
+def compute_strain(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
     """Strain tensor at a point, by central differences of the displacements."""
     axes = {axis: coordinate + step * np.array([-1.0, 0.0, 1.0]) for axis, coordinate in zip("xyz", point, strict=True)}
     field = displacement_field(body, pressure, friction=friction, **axes)
     gradient = np.empty((3, 3))
     for i, name in enumerate(("u_x", "u_y", "u_z")):
         for j, axis in enumerate("xyz"):
-            axis_values = field[name].isel({variant: 1 for variant in "xyz" if variant != axis}).values
+            axis_values = field[name].isel({other_axis: 1 for other_axis in "xyz" if other_axis != axis}).values
             gradient[i, j] = (axis_values[2] - axis_values[0]) / (2 * step)
     return 0.5 * (gradient + gradient.T)
 
@@ -54,7 +54,7 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric_load: xr
     friction = 0.4
     body, shear, nu = BODIES[name], MATERIAL.shear_modulus, MATERIAL.poisson
     for point in ((0.25, 0.2, 0.4), (1.5, -0.6, 0.8), (3.7, 0.1, 1.5)):
-        strain = strain_of(body, eccentric_load, friction, point)
+        strain = compute_strain(body, eccentric_load, friction, point)
         expected = 2 * shear * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
         stress = stress_field(body, eccentric_load, friction=friction, x=point[:1], y=point[1:2], z=point[2:]).squeeze()
         for i, j, component in (
@@ -71,10 +71,12 @@ def test_displacement_field_equals_surface_displacement_on_top(name: str, eccent
     field_on_top = displacement_field(BODIES[name], eccentric_load, friction=friction)["u_z"].sel(z=0.0, drop=True)
     tolerance = {"half-space": 1e-12, "mirror": 1e-7}.get(name, 1e-3)
     assert float(np.abs(field_on_top - displacement).max()) < tolerance * float(displacement.max() - displacement.min())
-    smooth = displacement_field(BODIES[name], eccentric_load, friction=friction, inside_cells=eccentric_load)[
-        "u_z"
-    ].sel(z=0.0, drop=True)
-    assert float(np.abs(smooth - displacement).max()) < 2e-3 * float(displacement.max() - displacement.min())
+    smooth_displacement = displacement_field(
+        BODIES[name], eccentric_load, friction=friction, inside_cells=eccentric_load
+    )["u_z"].sel(z=0.0, drop=True)
+    assert float(np.abs(smooth_displacement - displacement).max()) < 2e-3 * float(
+        displacement.max() - displacement.min()
+    )
 
 
 def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
@@ -93,7 +95,7 @@ def test_displacement_vanishes_at_reference_distance(eccentric_load: xr.DataArra
     assert float(ratio) < 2e-3
 
 
-def test_every_component_has_its_unit(eccentric_load: xr.DataArray) -> None:
+def test_displacements_have_unit_of_length(eccentric_load: xr.DataArray) -> None:
     field = displacement_field(BODIES["half-space"], eccentric_load, x=[0.0], y=[0.0], z=[1.0])
     assert [field[name].attrs["units"] for name in ("u_x", "u_y", "u_z")] == ["m"] * 3
 
@@ -114,7 +116,7 @@ def test_invalid_input_raises_error(arguments, parameter: str, eccentric_load: x
 
 
 def test_displacement_does_not_depend_on_further_positions() -> None:
-    # Pressure near an end: the ends' part at a distant point depends on wavelengths of this distance.
+    # Pressure near an end: the end correction at a distant point depends on wavelengths of this distance.
     body = FiniteLengthSpace(length=1.0, material=Material(1.0, 0.3))
     edges = [0.0, 0.005, 0.007, 0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
     grid = Grid.between(edges, (-0.01, 0.01), 8)
@@ -122,13 +124,13 @@ def test_displacement_does_not_depend_on_further_positions() -> None:
     cells[1] = 1.0
     loads = {Load.NORMAL: TopLoad(cells)}
 
-    def displacement_at(x: list[float], z: list[float]) -> float:
+    def compute_displacement(x: list[float], z: list[float]) -> float:
         points = Points(np.array(x), np.zeros(1), np.array(z))
         return float(displacement_under(body, loads, grid, points)[2, -1, 0, -1])
 
-    single_displacement = displacement_at([0.6], [1.0])
-    assert displacement_at([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single_displacement, rel=1e-6)
-    assert displacement_at([0.1, 0.6], [1.0]) == pytest.approx(single_displacement, rel=1e-6)
+    single_displacement = compute_displacement([0.6], [1.0])
+    assert compute_displacement([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single_displacement, rel=1e-6)
+    assert compute_displacement([0.1, 0.6], [1.0]) == pytest.approx(single_displacement, rel=1e-6)
 
 
 def test_influence_on_a_plane_sums_to_the_displacement() -> None:
@@ -139,5 +141,5 @@ def test_influence_on_a_plane_sums_to_the_displacement() -> None:
     for load in Load:
         points = Points(x, np.zeros(1), np.array([0.8]))
         expected = displacement_under(body, {load: TopLoad(cells)}, grid, points)[2, :, 0, 0]
-        summed = np.tensordot(normal_influence(body, grid, load, x, 0.8), cells, axes=2)
-        np.testing.assert_allclose(summed, expected, atol=1e-5 * np.abs(expected).max())
+        summed_influence = np.tensordot(normal_influence(body, grid, load, x, 0.8), cells, axes=2)
+        np.testing.assert_allclose(summed_influence, expected, atol=1e-5 * np.abs(expected).max())

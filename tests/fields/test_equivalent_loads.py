@@ -1,4 +1,4 @@
-"""Equivalent loads: their conditions, checked in real space without the equation set."""
+"""Equivalent loads: conditions in real space, without the equation set."""
 
 from __future__ import annotations
 
@@ -32,13 +32,15 @@ def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
     y = grid.y[[10, 28, 33, 50]]
 
-    def on_ends(load: Load, cells: np.ndarray) -> np.ndarray:
+    def compute_end_stress(load: Load, cells: np.ndarray) -> np.ndarray:
         return half_space_field(
             cells, stress_influence(load, 0.3), grid, Points(np.array([0.0, 8.0]), y, depths), extent=(0.0, 8.0)
         )[0]
 
-    end_stress = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
-    # The top load is known on cells, within the window only.
+    end_stress = compute_end_stress(Load.NORMAL, loads["P_h1"].values) + friction * compute_end_stress(
+        Load.ALONG_Y, pressure.values
+    )
+    # The load on the top is limited to the cells of the window.
     assert np.abs(end_stress[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
     assert np.abs(end_stress[1] - loads["P_v2"].sel(y=y)).max() < 2e-2
     assert float(np.abs(loads["P_v1"]).max()) > 0.5
@@ -75,8 +77,8 @@ def test_equivalent_loads_of_solved_pressure(kind: str, distance: float) -> None
         loads = equivalent_loads(body, result.pressure, 0.2, z=depths)
         assert ("P_v1" in loads) is has_end_correction
         assert all(np.isfinite(loads[name]).all() for name in loads.data_vars)
-        exceeds = float(loads["P_h1"].max()) > float(result.pressure.max())
-        assert exceeds is has_end_correction
+        exceeds_pressure = float(loads["P_h1"].max()) > float(result.pressure.max())
+        assert exceeds_pressure is has_end_correction
 
 
 def test_eccentric_loads_do_not_depend_on_pole_panel(
@@ -84,11 +86,11 @@ def test_eccentric_loads_do_not_depend_on_pole_panel(
 ) -> None:
     pressure = strip_pressure(8.0, (16, 16)) * (1 + 0.5 * (strip_pressure(8.0, (16, 16)).x - 4.0))
 
-    def loads():
+    def compute_loads():
         return equivalent_loads(short_body, pressure, 0.3, z=[0.2, 1.0])
 
-    baseline = loads()
+    baseline = compute_loads()
     assert baseline["P_h1"].attrs["reference_distance"] == 80.0
     monkeypatch.setitem(problem.POLE_PANEL_FACTOR, POLES, 0.1 * problem.POLE_PANEL_FACTOR[POLES])
     for name in ("P_h1", "P_v1", "P_v2"):
-        assert float(np.abs(loads()[name] - baseline[name]).max()) < 1e-4 * float(np.abs(baseline[name]).max())
+        assert float(np.abs(compute_loads()[name] - baseline[name]).max()) < 1e-4 * float(np.abs(baseline[name]).max())

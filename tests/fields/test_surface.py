@@ -1,4 +1,4 @@
-"""Displacement of the top: closed forms, reciprocity, limits, and requirements of EHL codes."""
+"""Displacement of the top: closed forms, reciprocity, limits, reference, coarse operator."""
 
 from __future__ import annotations
 
@@ -23,36 +23,37 @@ def test_hertz_pressure_has_parabolic_displacement(on_cells, half_space: HalfSpa
     peak = 2 / np.pi
     pressure = on_cells(lambda x, y: peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.5, 1.5), (-1.5, 1.5), (96, 96))
     displacement = surface_displacement(half_space, pressure)
-    radius2 = pressure.x**2 + pressure.y**2
-    assert float(np.abs(displacement - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
+    squared_radius = pressure.x**2 + pressure.y**2
+    assert float(np.abs(displacement - (1 - squared_radius / 2)).where(squared_radius < 0.8).max()) < 2e-3
 
 
-@pytest.mark.parametrize("tangential", [False, True])
-def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, tangential: bool) -> None:
+@pytest.mark.parametrize("is_tangential", [False, True])
+def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, is_tangential: bool) -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first_load, second_load = np.random.default_rng(1).random((2, 24, 16))
-    if tangential:
-        original = operator({Load.ALONG_Y: first_load})
-        mirrored = operator({Load.ALONG_Y: first_load[:, ::-1]})
-        assert np.abs(original + mirrored[:, ::-1]).max() < 1e-12
+    if is_tangential:
+        first_displacement = operator({Load.ALONG_Y: first_load})
+        mirrored_displacement = operator({Load.ALONG_Y: first_load[:, ::-1]})
+        assert np.abs(first_displacement + mirrored_displacement[:, ::-1]).max() < 1e-12
     else:
         works = [
-            (a * operator({Load.NORMAL: b})).sum() for a, b in ((first_load, second_load), (second_load, first_load))
+            (observed_load * operator({Load.NORMAL: displacing_load})).sum()
+            for observed_load, displacing_load in ((first_load, second_load), (second_load, first_load))
         ]
         assert works[0] == pytest.approx(works[1], rel=1e-12)
 
 
 def test_long_body_has_displacement_of_half_space(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 30) ** 2 - y**2, 0.0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
-    finite = surface_displacement(FiniteLengthSpace(length=60.0, material=unit_material), pressure, 0.2)
+    finite_displacement = surface_displacement(FiniteLengthSpace(length=60.0, material=unit_material), pressure, 0.2)
     half_space_displacement = surface_displacement(HalfSpace(material=unit_material), pressure, 0.2)
-    difference = (finite - half_space_displacement).sel(x=slice(28, 32))
+    difference = (finite_displacement - half_space_displacement).sel(x=slice(28, 32))
     assert float(difference.max() - difference.min()) < 2e-3 * float(half_space_displacement.max())
 
 
-def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
-    """A point load on the edge of a quarter space sinks the edge 3.362954 times as far as on a half-space."""
+def test_incompressible_edge_displacement_equals_published_ratio(unit_material: Material) -> None:
+    """The displacement of the edge under a point load is 3.362954 times that of a half-space."""
     length, cells = 20.0, 200
     x = length * (np.arange(cells) + 0.5) / cells
     y = 0.1 * (np.arange(101) - 50)
@@ -60,11 +61,13 @@ def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
     load[0, 50] = 1.0
     pressure = xr.DataArray(load, coords={"x": x, "y": y}, dims=("x", "y"))
     material = Material(0.75, 0.5)
-    edge = surface_displacement(FiniteLengthSpace(length=length, material=material), pressure)[0]
+    edge_displacement = surface_displacement(FiniteLengthSpace(length=length, material=material), pressure)[0]
     half_space_row = surface_displacement(HalfSpace(material=material), pressure)[0]
-    # The differences lie along the edge: the influence of the second end on them is almost uniform.
+    # Differences along the edge exclude the nearly uniform influence of the second end.
     near_cell, far_cell = 65, 90
-    ratio = float(edge[near_cell] - edge[far_cell]) / float(half_space_row[near_cell] - half_space_row[far_cell])
+    ratio = float(edge_displacement[near_cell] - edge_displacement[far_cell]) / float(
+        half_space_row[near_cell] - half_space_row[far_cell]
+    )
     assert ratio == pytest.approx(3.362954, rel=2e-2)
 
 
@@ -75,7 +78,7 @@ def test_friction_lowers_the_surface_ahead(short_body: FiniteLengthSpace, strip_
     assert np.abs(change + change.values[:, ::-1]).max() < 1e-12
 
 
-def test_attributes_state_the_reference(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_displacement_has_reference_distance(short_body: FiniteLengthSpace, strip_pressure) -> None:
     displacement = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
     assert displacement.attrs["reference_distance"] == pytest.approx(80.0)
     assert displacement.attrs["units"] == "m"
@@ -97,9 +100,9 @@ def test_coarse_operator_approximates_operator_on_coarse_cells(short_body, unit_
             Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0], cells_y=cells[1]),
             Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0] // 2, cells_y=cells[1] // 2),
         )
-        operator, built = (surface_operator(body, grid) for grid in grids)
+        operator, built_operator = (surface_operator(body, grid) for grid in grids)
         pressure = rng.random((cells[0] // 2, cells[1] // 2))
-        expected = built({Load.NORMAL: pressure})
+        expected = built_operator({Load.NORMAL: pressure})
         assert np.abs(operator.coarse({Load.NORMAL: pressure}) - expected).max() < 5e-3 * np.ptp(expected)
 
 

@@ -1,4 +1,4 @@
-"""Tractions in both directions: the whole operator of the top, traction-free ends, arguments by name."""
+"""Tractions in both directions: operator of the top, traction-free ends, arguments."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ X, Y = Load.ALONG_X, Load.ALONG_Y
 ALL = (Load.NORMAL, X, Y)
 
 
-def traction(cells: int = 24, along_x: float = 0.3) -> xr.DataArray:
+def make_asymmetric_traction(cells: int = 24, slope_x: float = 0.3) -> xr.DataArray:
     """A load that reaches both ends and has no symmetry."""
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=cells, cells_y=cells)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-    cell_loads = np.maximum(1 - y**2, 0) * (1 + along_x * x) * (1 + 0.2 * y)
+    cell_loads = np.maximum(1 - y**2, 0) * (1 + slope_x * x) * (1 + 0.2 * y)
     return xr.DataArray(cell_loads, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
-def acting_loads(load: Load, cell_loads: xr.DataArray) -> dict[str, xr.DataArray]:
+def load_arguments(load: Load, cell_loads: xr.DataArray) -> dict[str, xr.DataArray]:
     """Arguments of a load in one direction alone."""
     names = {Load.NORMAL: "pressure", Load.ALONG_X: "traction_x", Load.ALONG_Y: "traction_y"}
     return {"pressure": 0 * cell_loads} | {names[load]: cell_loads}
@@ -62,15 +62,15 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     rng = np.random.default_rng(0)
     first_loads, second_loads = ({load: rng.standard_normal(grid.shape) for load in ALL} for _ in range(2))
 
-    def works(loads: dict[Load, FloatArray], displacing_loads: dict[Load, FloatArray]) -> FloatArray:
-        displaced = operator.compute_displacements(displacing_loads, ALL)
-        return np.array([(grid.weights * loads[load] * displaced[load]).sum() for load in ALL])
+    def compute_works(loads: dict[Load, FloatArray], displacing_loads: dict[Load, FloatArray]) -> FloatArray:
+        displacements = operator.compute_displacements(displacing_loads, ALL)
+        return np.array([(grid.weights * loads[load] * displacements[load]).sum() for load in ALL])
 
-    work, reciprocal_work = works(first_loads, second_loads), works(second_loads, first_loads)
+    work, reciprocal_work = compute_works(first_loads, second_loads), compute_works(second_loads, first_loads)
     assert abs(work.sum() - reciprocal_work.sum()) < 1e-12 * np.abs(work).sum()
     for _ in range(5):
         load = {direction: rng.standard_normal(grid.shape) for direction in ALL}
-        assert works(load, load).sum() > 0
+        assert compute_works(load, load).sum() > 0
 
 
 @pytest.mark.parametrize(
@@ -79,72 +79,80 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
 )
 def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None:
     """The surface operator equals the harmonics of both auxiliary bodies at the depth 0."""
-    body, loads = BODIES[name], acting_loads(load, traction())
-    top = surface_displacement(body, **loads, components="xyz")
+    body, loads = BODIES[name], load_arguments(load, make_asymmetric_traction())
+    surface_result = surface_displacement(body, **loads, components="xyz")
     body_field = displacement_field(body, **loads)
-    largest = max(float(np.ptp(top[name].values)) for name in top)
+    max_displacement = max(float(np.ptp(surface_result[name].values)) for name in surface_result)
     # Columns at a loaded end are averaged: under a traction along x their displacement has a logarithmic slope.
-    inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
+    inner_range = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
-        difference = (top[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner)
-        assert float(np.abs(difference).max()) < 2e-3 * largest, axis
+        difference = (surface_result[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner_range)
+        assert float(np.abs(difference).max()) < 2e-3 * max_displacement, axis
 
 
 @pytest.mark.parametrize("body", [BODIES["quarter space"], BODIES["finite length"]], ids=["quarter", "finite"])
 @pytest.mark.parametrize("load", ALL)
 def test_ends_are_free_of_traction(body: Body, load: Load) -> None:
-    ends = [end for end in body.extent if np.isfinite(end)]
+    end_positions = [end_x for end_x in body.extent if np.isfinite(end_x)]
     stress = stress_field(
-        body, **acting_loads(load, traction(48)), x=ends, y=[-1.2, -0.5, 0.0, 0.7], z=[0.05, 0.2, 1.0, 4.0]
+        body,
+        **load_arguments(load, make_asymmetric_traction(48)),
+        x=end_positions,
+        y=[-1.2, -0.5, 0.0, 0.7],
+        z=[0.05, 0.2, 1.0, 4.0],
     )
     for name in ("sigma_xx", "tau_xy", "tau_xz"):
         assert float(np.abs(stress[name]).max()) < 1e-4, name
 
 
 def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> None:
-    """Hooke's law holds at a point between two ends that the force bends."""
-    body, loads = BODIES["finite length"], acting_loads(Load.ALONG_X, traction())
-    at, step = {"x": 0.4, "y": 0.3, "z": 0.6}, 0.02
+    """Hooke's law at a point of a body that the force bends."""
+    body, loads = BODIES["finite length"], load_arguments(Load.ALONG_X, make_asymmetric_traction())
+    position_by_axis, step = {"x": 0.4, "y": 0.3, "z": 0.6}, 0.02
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
     gradient = np.empty((3, 3))
     for column, axis in enumerate("xyz"):
-        points = {name: [coordinate] for name, coordinate in at.items()} | {axis: at[axis] + offsets}
-        shifted = displacement_field(body, **loads, **points)
-        gradient[:, column] = [float(weights @ shifted[name].values.ravel()) for name in ("u_x", "u_y", "u_z")]
+        points = {name: [coordinate] for name, coordinate in position_by_axis.items()} | {
+            axis: position_by_axis[axis] + offsets
+        }
+        displacement = displacement_field(body, **loads, **points)
+        gradient[:, column] = [float(weights @ displacement[name].values.ravel()) for name in ("u_x", "u_y", "u_z")]
     strain = 0.5 * (gradient + gradient.T)
     nu = MATERIAL.poisson
     lame = MATERIAL.young * nu / ((1 + nu) * (1 - 2 * nu))
     expected = lame * np.trace(strain) * np.eye(3) + 2 * MATERIAL.shear_modulus * strain
-    computed = stress_field(body, **loads, **{name: [coordinate] for name, coordinate in at.items()}).isel(
-        x=0, y=0, z=0
-    )
-    pairs = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "tau_xy": (0, 1), "tau_xz": (0, 2)}
-    for name, position in pairs.items():
+    computed = stress_field(
+        body, **loads, **{name: [coordinate] for name, coordinate in position_by_axis.items()}
+    ).isel(x=0, y=0, z=0)
+    component_indices = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "tau_xy": (0, 1), "tau_xz": (0, 2)}
+    for name, position in component_indices.items():
         assert float(computed[name]) == pytest.approx(expected[position], abs=2e-3), name
 
 
 def test_reflection_reverses_axial_traction() -> None:
-    body, load = BODIES["finite length"], traction()
-    reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
-    shifted = surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz")
-    variant = surface_displacement(body, **acting_loads(Load.ALONG_X, reflected), components="xyz")
+    body, load = BODIES["finite length"], make_asymmetric_traction()
+    reflected_load = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
+    displacement = surface_displacement(body, **load_arguments(Load.ALONG_X, load), components="xyz")
+    reflected_displacement = surface_displacement(
+        body, **load_arguments(Load.ALONG_X, reflected_load), components="xyz"
+    )
     for axis, sign in (("x", -1), ("y", 1), ("z", 1)):
         name = f"displacement_{axis}"
-        assert np.abs(shifted[name].values - sign * variant[name].values[::-1]).max() < 1e-9 * float(
-            np.ptp(shifted[name].values)
-        )
+        assert np.abs(
+            displacement[name].values - sign * reflected_displacement[name].values[::-1]
+        ).max() < 1e-9 * float(np.ptp(displacement[name].values))
 
 
-def test_reference_changes_displacement_by_pure_bending() -> None:
-    """Displacements in two windows are equal: their reference belongs to the body."""
+def test_displacement_does_not_depend_on_window() -> None:
+    """The reference of the displacement belongs to the body, not to the window."""
     body = BODIES["finite length"]
-    shifted = []
-    for reach, cells in ((2.0, 20), (5.0, 50)):
-        grid = Grid(x_range=(0.0, LENGTH), y_range=(-reach, reach), cells_x=15, cells_y=cells)
+    displacements = []
+    for half_window, cells in ((2.0, 20), (5.0, 50)):
+        grid = Grid(x_range=(0.0, LENGTH), y_range=(-half_window, half_window), cells_x=15, cells_y=cells)
         load = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
-        shifted.append(surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz"))
-    narrow_window, wide_window = shifted[0], shifted[1].sel(y=shifted[0].y, method="nearest")
+        displacements.append(surface_displacement(body, **load_arguments(Load.ALONG_X, load), components="xyz"))
+    narrow_window, wide_window = displacements[0], displacements[1].sel(y=displacements[0].y, method="nearest")
     for name in narrow_window:
         assert np.abs(narrow_window[name].values - wide_window[name].values).max() < 2e-4 * float(
             np.ptp(narrow_window["displacement_x"].values)
@@ -158,7 +166,7 @@ def test_long_body_has_axial_displacement_of_half_space() -> None:
     cell_loads = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)
     load = xr.DataArray(cell_loads, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     finite_field, half_space_field = (
-        surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz").sel(x=slice(28, 32))
+        surface_displacement(body, **load_arguments(Load.ALONG_X, load), components="xyz").sel(x=slice(28, 32))
         for body in (FiniteLengthSpace(length=60.0, material=MATERIAL), HalfSpace(material=MATERIAL))
     )
     for name in half_space_field:
@@ -168,38 +176,42 @@ def test_long_body_has_axial_displacement_of_half_space() -> None:
 
 
 def test_mirrored_traction_mirrors_equivalent_loads() -> None:
-    load = traction()
-    reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
+    load = make_asymmetric_traction()
+    reflected_load = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
-    computed, variant = (
-        equivalent_loads(body, **acting_loads(Load.ALONG_X, applied_load), z=[0.3, 1.0])
-        for applied_load in (load, reflected)
+    computed, reflected_loads = (
+        equivalent_loads(body, **load_arguments(Load.ALONG_X, applied_load), z=[0.3, 1.0])
+        for applied_load in (load, reflected_load)
     )
-    largest = float(np.abs(computed.P_v1).max())
-    assert float(np.abs(computed.P_v1 - variant.P_v2).max()) < 1e-6 * largest
-    assert np.abs(computed.P_h1.values - variant.P_h1.values[::-1]).max() < 1e-6 * float(np.abs(computed.P_h1).max())
+    max_load = float(np.abs(computed.P_v1).max())
+    assert float(np.abs(computed.P_v1 - reflected_loads.P_v2).max()) < 1e-6 * max_load
+    assert np.abs(computed.P_h1.values - reflected_loads.P_h1.values[::-1]).max() < 1e-6 * float(
+        np.abs(computed.P_h1).max()
+    )
 
 
 def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     grid = GRIDS["uniform"]
     body = BODIES["finite length"]
-    pair = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
+    pair_operator = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
     pressure = np.random.default_rng(2).random(grid.shape)
-    shifted = pair.compute_displacements({Load.NORMAL: pressure}, ALL)
+    displacements = pair_operator.compute_displacements({Load.NORMAL: pressure}, ALL)
     for direction in (Load.ALONG_X, Load.ALONG_Y):
-        assert np.abs(shifted[direction]).max() < 1e-12 * np.abs(shifted[Load.NORMAL]).max()
-    axial_displacement = pair.compute_displacements({Load.ALONG_X: pressure}, ALL)
-    single_body = surface_operator(body, grid, ALL, directions=ALL).compute_displacements({Load.ALONG_X: pressure}, ALL)
-    assert axial_displacement[Load.ALONG_X] == pytest.approx(2 * single_body[Load.ALONG_X], rel=1e-12)
-    assert np.abs(axial_displacement[Load.NORMAL]).max() < 1e-12 * np.abs(single_body[Load.ALONG_X]).max()
+        assert np.abs(displacements[direction]).max() < 1e-12 * np.abs(displacements[Load.NORMAL]).max()
+    axial_displacement = pair_operator.compute_displacements({Load.ALONG_X: pressure}, ALL)
+    single_displacement = surface_operator(body, grid, ALL, directions=ALL).compute_displacements(
+        {Load.ALONG_X: pressure}, ALL
+    )
+    assert axial_displacement[Load.ALONG_X] == pytest.approx(2 * single_displacement[Load.ALONG_X], rel=1e-12)
+    assert np.abs(axial_displacement[Load.NORMAL]).max() < 1e-12 * np.abs(single_displacement[Load.ALONG_X]).max()
 
 
-def test_stresses_of_tractions_and_pressure_add_up() -> None:
-    load = traction()
+def test_displacements_of_tractions_and_pressure_add_up() -> None:
+    load = make_asymmetric_traction()
     body = BODIES["quarter space"]
-    sliding = surface_displacement(body, load, 0.2)
-    messages = surface_displacement(body, load, traction_y=0.2 * load)
-    assert np.allclose(sliding, messages, rtol=1e-12)
+    displacement_of_friction = surface_displacement(body, load, 0.2)
+    displacement_of_traction = surface_displacement(body, load, traction_y=0.2 * load)
+    assert np.allclose(displacement_of_friction, displacement_of_traction, rtol=1e-12)
     joint_displacement = surface_displacement(body, load, traction_x=0.1 * load, components="xz")
     sum_of_displacements = surface_displacement(body, load, components="xz") + 0.1 * surface_displacement(
         body, 0 * load, traction_x=load, components="xz"
@@ -211,12 +223,12 @@ def test_stresses_of_tractions_and_pressure_add_up() -> None:
 
 
 def test_invalid_input_raises_error() -> None:
-    load = traction()
+    load = make_asymmetric_traction()
     body = BODIES["finite length"]
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*traction_y"):
         surface_displacement(body, load, 0.1, traction_y=load)
     with pytest.raises(InvalidInputError, match=r"traction_x.coords.*those of the pressure"):
-        stress_field(body, load, traction_x=traction(12))
+        stress_field(body, load, traction_x=make_asymmetric_traction(12))
     with pytest.raises(InvalidInputError, match="components = 'w'"):
         surface_displacement(body, load, components="xw")
     with pytest.raises(InvalidInputError, match="components = \\[\\]"):

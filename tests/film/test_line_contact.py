@@ -10,30 +10,30 @@ from contactstudy.verification.film import nijenbanning
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
 
-BARUS = [
+BARUS_TABLE = [
     (2, 5, 4.451, 3.470),
     (20, 10, 5.270, 3.968),
     (1000, 10, 3.265, 2.434),
 ]
-ROELANDS = [(20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
+ROELANDS_TABLE = [(20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
 
 
-# The table's inlets end about four half-widths from the middle, with an influence at low load.
-@pytest.mark.parametrize(("load", "lubricant", "central", "least"), BARUS)
-def test_table_of_barus_oil(load, lubricant, central, least):
+# The inlets of the table have four half-widths, which matters at low loads.
+@pytest.mark.parametrize(("load", "lubricant", "central_film", "least_film"), BARUS_TABLE)
+def test_film_of_barus_oil_equals_table(load, lubricant, central_film, least_film):
     film = solve_line(load, lubricant, finest=0.1, inlet=4.0 if load < 100 else None)
-    assert film.central_film == pytest.approx(central, rel=5e-3)
-    assert film.least_film == pytest.approx(least, rel=5e-3)
+    assert film.central_film == pytest.approx(central_film, rel=5e-3)
+    assert film.least_film == pytest.approx(least_film, rel=5e-3)
     assert film.solution.residual < 1e-6
     assert film.solution.load_error < 1e-8
 
 
-@pytest.mark.parametrize(("load", "lubricant", "central", "least"), ROELANDS)
-def test_table_of_compressible_roelands_oil(load, lubricant, central, least):
+@pytest.mark.parametrize(("load", "lubricant", "central_film", "least_film"), ROELANDS_TABLE)
+def test_film_of_compressible_roelands_oil_equals_table(load, lubricant, central_film, least_film):
     oil = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, roelands_exponent=0.68)
     film = solve_line(load, lubricant, finest=0.1, inlet=4.0, oil=oil, max_pressure=1e9)
-    assert film.central_film == pytest.approx(central, rel=5e-3)
-    assert film.least_film == pytest.approx(least, rel=5e-3)
+    assert film.central_film == pytest.approx(central_film, rel=5e-3)
+    assert film.least_film == pytest.approx(least_film, rel=5e-3)
 
 
 @pytest.mark.slow
@@ -56,5 +56,5 @@ def test_film_formulas_return_published_values():
 
 def test_pressure_of_a_heavy_load_is_hertzian():
     film = solve_line(2000, 10)
-    inner = np.abs(film.y) < 0.9
-    assert np.abs(film.pressure - np.sqrt(np.maximum(1 - film.y**2, 0)))[inner].max() < 0.01
+    is_inner = np.abs(film.y) < 0.9
+    assert np.abs(film.pressure - np.sqrt(np.maximum(1 - film.y**2, 0)))[is_inner].max() < 0.01

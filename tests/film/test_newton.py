@@ -10,7 +10,8 @@ from contactstudy.film.reynolds import FilmCells, Fluid
 
 @pytest.mark.parametrize("end_pressure", [1.0, 20.0])
 def test_step_is_bounded_relative_to_hertz_pressure_of_largest_column_load(end_pressure):
-    """Under a sharp end the pressure exceeds that of the middle by powers of ten; a spike does not raise the bound."""
+    """The bound on a step uses the Hertz pressure of the largest column load; a spike of the pressure does not raise
+    it."""
     y_edges = 1.25 * end_pressure * np.linspace(-1.0, 1.0, 2001)
     cells = FilmCells(x_edges=np.array([0.0, 1.0, 2.0]), y_edges=y_edges, open_ends=False)
     problem = FilmProblem(
@@ -24,7 +25,12 @@ def test_step_is_bounded_relative_to_hertz_pressure_of_largest_column_load(end_p
         central_film=1.0,
     )
     # Hertz' half-width over a is Hertz' pressure over p0.
-    pressure = np.array([[p * np.sqrt(max(1 - (y / p) ** 2, 0.0)) for y in cells.y] for p in (1.0, end_pressure)])
+    pressure = np.array(
+        [
+            [max_pressure * np.sqrt(max(1 - (y / max_pressure) ** 2, 0.0)) for y in cells.y]
+            for max_pressure in (1.0, end_pressure)
+        ]
+    )
     pressure[0, 1000] += 0.1 * end_pressure
     state = problem.create_state(pressure, np.ones(1), np.ones(cells.shape))
     change = np.append(np.where(pressure == pressure[1].max(), 0.6 * end_pressure, 0.0).ravel(), 0.0)

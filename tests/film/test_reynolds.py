@@ -25,11 +25,11 @@ def test_faces_of_a_steep_film_are_positive_and_bounded(seed):
 
 def test_flow_between_films_equals_linear_film_flow():
     faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 3.0]), open_ends=False).faces_y
-    height, reduced = np.array([0.1, 2.0]), Law(np.array([1.0, 0.0]), np.ones(2))
+    height, reduced_pressure = np.array([0.1, 2.0]), Law(np.array([1.0, 0.0]), np.ones(2))
     nodes, weights = np.polynomial.legendre.leggauss(100)
-    linear = height.mean() + 0.5 * nodes * np.diff(height)
-    resistance = 1.5 * 0.5 * float(weights @ linear**-3)
-    assert faces.conduct_flow(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
+    linear_film = height.mean() + 0.5 * nodes * np.diff(height)
+    resistance = 1.5 * 0.5 * float(weights @ linear_film**-3)
+    assert faces.conduct_flow(4.0, reduced_pressure, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
 
 
 def test_flow_derivatives_agree_with_differences():
@@ -42,10 +42,12 @@ def test_flow_derivatives_agree_with_differences():
     derivatives = flow(height, pressure)
     for cell in range(5):
         change = step * (np.arange(5) == cell)
-        film_jacobian = (flow(height + change, pressure).flow - flow(height - change, pressure).flow) / (2 * step)
-        pressure_jacobian = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
-        assert derivatives.film_jacobian.toarray()[:, cell] == pytest.approx(film_jacobian, rel=1e-6, abs=1e-9)
-        assert derivatives.pressure_jacobian.toarray()[:, cell] == pytest.approx(pressure_jacobian, rel=1e-6, abs=1e-9)
+        film_difference = (flow(height + change, pressure).flow - flow(height - change, pressure).flow) / (2 * step)
+        pressure_difference = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
+        assert derivatives.film_jacobian.toarray()[:, cell] == pytest.approx(film_difference, rel=1e-6, abs=1e-9)
+        assert derivatives.pressure_jacobian.toarray()[:, cell] == pytest.approx(
+            pressure_difference, rel=1e-6, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("law", ["barus", "roelands"])
@@ -57,8 +59,8 @@ def test_flow_rises_with_the_pressure_step(law):
     height = np.ones(2)
 
     def flow(pressure):
-        reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
-        pressure_flow = faces.conduct_flow(fluid.flow_number, reduced, height)
+        reduced_pressure = fluid.reduced_pressure(np.array([pressure, 0.0]))
+        pressure_flow = faces.conduct_flow(fluid.flow_number, reduced_pressure, height)
         assert pressure_flow.pressure_jacobian.toarray()[1, 0] >= 0
         return float(pressure_flow.flow[1])
 

@@ -1,4 +1,4 @@
-"""Checks of the finite elements of passes against closed forms and stored results."""
+"""Finite elements of passes against closed forms and stored results."""
 
 from __future__ import annotations
 
@@ -11,45 +11,48 @@ from benchmarks.finite_elements.passes import YOUNG, PlasticStrip, Strip
 from benchmarks.finite_elements.passes_file import PRODUCTION, solve_reference
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
-COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
+COARSE_STRIP = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
 
 
-def test_no_plastic_flow_below_yield() -> None:
+def test_line_contact_below_first_yield_has_no_plastic_strain() -> None:
     """First yield of a line contact is at p0 = 3.107 k."""
-    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).roll()
+    strains, stresses, _ = PlasticStrip(
+        PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE_STRIP
+    ).roll_over()
     assert np.abs(strains).max() == 0
     assert np.abs(stresses).max() < 1e-12
 
 
-def test_stress_of_layers() -> None:
-    """Far behind the contact plastic strain is uniform along y, its stress Hooke's with xx and yy held."""
-    strip = PlasticStrip(PASSES_CASES["settling"], COARSE)
-    strains, stresses, spread = strip.roll()
+def test_residual_stress_equals_stress_of_uniform_layers() -> None:
+    """Far behind the contact the plastic strain is uniform along y; the stress follows from zero total strains xx and
+    yy."""
+    strip = PlasticStrip(PASSES_CASES["settling"], COARSE_STRIP)
+    strains, stresses, strain_spread = strip.roll_over()
     xx, yy, zz, _ = YOUNG * strains[-1]
     poisson = strip.case.poisson
     assert xx + yy + zz == pytest.approx(0, abs=1e-9)
-    size = np.abs(stresses).max()
+    max_stress = np.abs(stresses).max()
     assert stresses[:2] == pytest.approx(
-        -np.array([xx + poisson * yy, yy + poisson * xx]) / (1 - poisson**2), abs=0.1 * size
+        -np.array([xx + poisson * yy, yy + poisson * xx]) / (1 - poisson**2), abs=0.1 * max_stress
     )
-    assert stresses[2:] == pytest.approx(0, abs=0.01 * size)
-    assert size > 0.05
-    assert YOUNG * spread.max() < 0.1 * np.abs(YOUNG * strains).max()
+    assert stresses[2:] == pytest.approx(0, abs=0.01 * max_stress)
+    assert max_stress > 0.05
+    assert YOUNG * strain_spread.max() < 0.1 * np.abs(YOUNG * strains).max()
 
 
-def test_radial_return_tangent() -> None:
-    """The tangent equals the derivative of stresses, below and above yield."""
-    strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE)
+def test_radial_return_tangent_equals_stress_derivative() -> None:
+    """Some strains are below yield, others above."""
+    strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE_STRIP)
     rng = np.random.default_rng(2)
-    total, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
-    elastic = np.zeros((4, 40))
-    stress, plastic_after, tangent = strip.return_stress(total, plastic, elastic)
+    total_strain, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
+    elastic_stress = np.zeros((4, 40))
+    stress, plastic_after, tangent = strip.return_stress(total_strain, plastic, elastic_stress)
     assert 0 < np.count_nonzero((plastic_after != plastic).any(axis=0)) < 40
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
         stress_forward, stress_backward = (
-            strip.return_stress(total + step_sign * change, plastic, elastic)[0] for step_sign in (1, -1)
+            strip.return_stress(total_strain + step_sign * change, plastic, elastic_stress)[0] for step_sign in (1, -1)
         )
         slope = (stress_forward - stress_backward) / 2e-9 / (2 if component == 3 else 1)
         assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)
@@ -57,11 +60,11 @@ def test_radial_return_tangent() -> None:
 
 
 @pytest.mark.slow
-def test_coarse_mesh() -> None:
-    reference = load_reference(PASSES_FILE, "flowing_sliding")
+def test_passes_on_coarse_mesh_approximate_stored_passes() -> None:
+    stored_passes = load_reference(PASSES_FILE, "flowing_sliding")
     result = solve_reference(PASSES_CASES["flowing_sliding"], replace(PRODUCTION, width=1.0, step=1 / 4))
-    size = float(np.abs(reference["sigma_xx"]).max())
-    assert np.abs(result["sigma_xx"].values - reference["sigma_xx"].values).max() < 0.15 * size
-    shear, expected = (dataset["plastic_strain_yz_young"].sum("z").values for dataset in (result, reference))
+    max_stress = float(np.abs(stored_passes["sigma_xx"]).max())
+    assert np.abs(result["sigma_xx"].values - stored_passes["sigma_xx"].values).max() < 0.15 * max_stress
+    shear, expected = (dataset["plastic_strain_yz_young"].sum("z").values for dataset in (result, stored_passes))
     # Flow accumulates over the passes, with the errors of a coarse mesh.
     assert shear == pytest.approx(expected, abs=0.3 * float(np.abs(expected).max()))

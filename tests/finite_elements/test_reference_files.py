@@ -1,4 +1,4 @@
-"""The files of stored references: attributes of the file, groups of single precision."""
+"""Files of stored references."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ import xarray as xr
 from benchmarks.finite_elements.reference_files import append_case, create_file
 
 
-def test_file_with_two_cases(tmp_path: Path) -> None:
+def test_reference_file_contains_cases_in_single_precision(tmp_path: Path) -> None:
     path = tmp_path / "stored.nc"
     solution = xr.Dataset({"film": ("x", [0.1, 0.2], {"units": "a"})}, {"x": [0.3, 0.6]}, {"length": 8.0})
     for _ in range(2):  # A second file replaces the first.

@@ -1,11 +1,11 @@
-"""Stick and slip between free ends: the solver against finite elements with a convex program of their own."""
+"""Stick and slip between free ends: the solver against finite elements with a convex program."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from benchmarks.finite_elements.rolling import flexibility, roll
+from benchmarks.finite_elements.rolling import compute_flexibility, solve_rolling
 from benchmarks.finite_elements.superpose import PANELS, Resolution
 from contactstudy import FiniteLengthSpace, Material, Rolling
 from contactstudy.bodies import Counterbody
@@ -18,14 +18,14 @@ LOAD = 0.25 * np.pi * 0.5 * LENGTH  # half-width 1 of a pair with the modulus 1/
 
 
 @pytest.mark.slow
-def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A short body under longitudinal creepage, with the transverse traction that its ends make.
+def test_rolling_between_free_ends_equals_finite_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ends of a short body cause a transverse traction under longitudinal creepage.
 
-    Both codes take the slip between neighbours, with the same error of first order.
+    The slip of both codes is the difference between neighbouring cells, with equal errors of first order.
     """
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
-    expected = roll(
-        flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
+    expected = solve_rolling(
+        compute_flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
     )
     assert expected.change < 1e-3
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
@@ -36,14 +36,14 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     result = solve_contact(body, gap, load=LOAD, friction=FRICTION, counterbody=Counterbody(body), motion=motion)
     # At this creepage a change of 1 % changes the force by 0.75 %.
     assert float(result["longitudinal_creepage"]) == pytest.approx(expected.creepage, rel=1e-3)
-    first, max_bound = result.isel(x=slice(0, COLUMNS // 2)), FRICTION * float(result["pressure"].max())
-    # The reference has means of columns as wide as a half-width, the package their midpoints.
-    assert np.abs(first["pressure"] - expected.pressure).max() < 1e-2 * float(result["pressure"].max())
+    first_half, max_bound = result.isel(x=slice(0, COLUMNS // 2)), FRICTION * float(result["pressure"].max())
+    # The reference contains means over columns of one half-width, the package values at their midpoints.
+    assert np.abs(first_half["pressure"] - expected.pressure).max() < 1e-2 * float(result["pressure"].max())
     assert np.abs(expected.along_x).max() > 0.1 * max_bound
     for traction, expected_traction in (
-        (first["traction_x"], expected.along_x),
-        (first["traction_y"], expected.along_y),
+        (first_half["traction_x"], expected.along_x),
+        (first_half["traction_y"], expected.along_y),
     ):
-        # Where slip begins a cell of one sticks that slips in the other.
+        # At the border of slip, a cell may stick in one solution and slip in the other.
         assert np.abs(traction - expected_traction).max() < 0.05 * max_bound
         assert np.abs(traction - expected_traction).mean() < 2e-3 * max_bound

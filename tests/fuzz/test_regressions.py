@@ -1,4 +1,4 @@
-"""Regression cases from random runs, by name."""
+"""Cases from random runs that violated a property."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, Shift,
 
 
 @pytest.mark.slow
-def test_coupled_contact_of_a_short_elastic_roller() -> None:
+def test_coupled_contact_of_short_elastic_roller_converges() -> None:
     body = FiniteLengthSpace(material=Material(82323447553.80612, 0.5), length=2.1301408010505498e-07)
     roller = Roller(
         radius=0.0029670151688925748,
@@ -31,7 +31,7 @@ def test_coupled_contact_of_a_short_elastic_roller() -> None:
     assert float(result["penetration_error"]) < 1e-6
 
 
-def test_stresses_below_single_cell_contact() -> None:
+def test_stress_below_single_cell_contact_equals_pressure() -> None:
     """A contact of one cell in a wide window has finite stresses below it."""
     body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
     case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)
@@ -51,8 +51,8 @@ def test_stresses_below_single_cell_contact() -> None:
     ],
     ids=str,
 )
-def test_small_shift(motion: Shift) -> None:
-    """Newton's method went round in circles: the pressure alone displaces the surfaces by more than the shift."""
+def test_small_shift_converges(motion: Shift) -> None:
+    """The pressure alone displaces the surfaces by more than the shift, so that Newton's method may cycle."""
     material = Material(4.625e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=2.407632396547847e-08, material=material),
@@ -69,8 +69,8 @@ def test_small_shift(motion: Shift) -> None:
     assert float(result["slip_error"]) < 1e-5
 
 
-def test_shift_of_overlapping_ends() -> None:
-    """Each descent of the energy began at an iterate of Newton's method that went round in circles."""
+def test_shift_of_overlapping_ends_converges() -> None:
+    """Newton's method cycles, and descents of the energy start from its iterates."""
     steel = Material(210e9, 0.0)
     tapered = profiles.FujiwaraKawase(
         amplitude=1.689573911465408e-12, edge_drop=3.379147822930816e-12, k1=1.2727051015735997, k2=0.6896010243489831

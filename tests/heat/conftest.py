@@ -1,4 +1,4 @@
-"""Materials and contacts that the tests of heat share."""
+"""Shared materials and contacts of the tests of heat."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def line_case() -> Case:
 def create_line_result() -> Callable[..., xr.Dataset]:
     """Make the result of Hertz' line pressure along the whole of `line_case`, with a coefficient of friction."""
 
-    def build(grid: Grid = LINE_GRID, friction: float = 0.05) -> xr.Dataset:
+    def make_result(grid: Grid = LINE_GRID, friction: float = 0.05) -> xr.Dataset:
         pressure = 1.5e9 * np.sqrt(np.maximum(1 - (grid.y / CASE.hertz_half_width) ** 2, 0)) + 0 * grid.x[:, None]
         coords = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
         fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), friction * pressure)}
         scales = {"hertz_half_width": CASE.hertz_half_width, "hertz_max_pressure": 1.5e9}
         return xr.Dataset(fields | scales, coords=coords)
 
-    return build
+    return make_result

@@ -1,4 +1,4 @@
-"""Fields under columns of any width: against uniform cells, splitting, additivity, distant columns."""
+"""Fields under columns of any width: against uniform cells, split columns, additivity, distant columns."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ EXTENTS = {"none": (-np.inf, np.inf), "first": (0.0, np.inf), "last": (-np.inf, 
 X, Z = np.array([0.0, 0.3, 1.0, LENGTH]), np.array([0.05, 0.5])
 
 
-def stresses_of(load: Load) -> Influence:
+def compute_stresses(load: Load) -> Influence:
     return stress_influence(load, POISSON)
 
 
-def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
+def compute_displacements(load: Load, extent: tuple[float, float]) -> Influence:
     return displacement_influence(load, POISSON, extent[1] - extent[0], 20.0)
 
 
@@ -44,13 +44,13 @@ def test_columns_reproduce_field_of_uniform_cells(load: Load, extent: str) -> No
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     cells = np.random.default_rng(0).random(grid.shape)
     cells[:, :3] = 0
-    # Displacements of a row without end are differences of large numbers.
-    for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
+    # Displacements of an infinite row of images are differences of large numbers.
+    for influence, tolerance in ((compute_stresses(load), 2e-7), (compute_displacements(load, EXTENTS[extent]), 3e-6)):
         for y in (grid.y, np.array([0.1, 0.33])):
             expected = half_space_field(cells, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
             computed = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
             assert computed.shape == expected.shape
-            assert np.abs(computed - expected).max() < allowed * np.abs(expected).max()
+            assert np.abs(computed - expected).max() < tolerance * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("load", Load)
@@ -62,25 +62,27 @@ def test_shifted_body_has_equal_field(load: Load, extent: str) -> None:
         ends = (EXTENTS[extent][0] + position, EXTENTS[extent][1] + position)
         cells = np.random.default_rng(2).random(grid.shape)
         fields.append(
-            columns_field(cells, None, stresses_of(load), grid, Points(position + X, np.array([0.1]), Z), extent=ends)
+            columns_field(
+                cells, None, compute_stresses(load), grid, Points(position + X, np.array([0.1]), Z), extent=ends
+            )
         )
     assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
 
 
-GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
-"""Indices of the retained edges of twenty uniform cells."""
+GRADED_INDICES = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
+"""Indices of the edges of twenty uniform cells that are edges of the graded cells."""
 
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
-    uniform = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
-    graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
-    cells = np.random.default_rng(1).random(graded.shape)
-    spread = np.repeat(cells, np.diff(GRADED), axis=0)
-    influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
-    expected = half_space_field(spread, influence, uniform, Points(X, y, Z), extent=EXTENTS[extent])
-    computed = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
+    uniform_grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
+    graded_grid = Grid.from_edges(uniform_grid.x_edges[GRADED_INDICES], (-1.0, 1.0), 16)
+    cells = np.random.default_rng(1).random(graded_grid.shape)
+    uniform_load = np.repeat(cells, np.diff(GRADED_INDICES), axis=0)
+    influence, y = compute_stresses(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
+    expected = half_space_field(uniform_load, influence, uniform_grid, Points(X, y, Z), extent=EXTENTS[extent])
+    computed = columns_field(cells, None, influence, graded_grid, Points(X, y, Z), extent=EXTENTS[extent])
     # The field of the columns is interpolated along y at the larger depth.
     assert np.abs(computed - expected).max() < 1e-6 * np.abs(expected).max()
 
@@ -89,24 +91,27 @@ def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("column", [7, 10])
 def test_single_loaded_column_keeps_position(load: Load, extent: str, column: int) -> None:
-    # The columns are split so that each point lies in the middle of a column, without a change of the load's position.
-    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
-    cells = np.zeros(graded.shape)
-    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image_sign=load.sign_x)
-    uniform = Grid(
+    # Columns are split so that each point lies at the centre of a column; the load keeps its position.
+    graded_grid = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED_INDICES], (-1.0, 1.0), 16)
+    cells = np.zeros(graded_grid.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded_grid.y / 0.6) ** 2, 0))
+    fine_load = FineCells(load=cells, shape=cells, grid=graded_grid, extent=EXTENTS[extent], image_sign=load.sign_x)
+    uniform_grid = Grid(
         x_range=(0.0, LENGTH),
-        y_range=(float(fine.y_edges[0]), float(fine.y_edges[-1])),
+        y_range=(float(fine_load.y_edges[0]), float(fine_load.y_edges[-1])),
         cells_x=20,
-        cells_y=9 * fine.cell_loads.shape[1],
+        cells_y=9 * fine_load.cell_loads.shape[1],
     )
-    smooth_load = fine.shape_along_y(fine.cell_loads, fine.cell_loads)
-    means = np.diff(smooth_load.integral(np.linspace(*uniform.y_range, uniform.cells_y + 1)), axis=1) / uniform.dy
-    spread = np.repeat(means, np.diff(GRADED), axis=0)
-    influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
+    smooth_load = fine_load.shape_along_y(fine_load.cell_loads, fine_load.cell_loads)
+    means = (
+        np.diff(smooth_load.integral(np.linspace(*uniform_grid.y_range, uniform_grid.cells_y + 1)), axis=1)
+        / uniform_grid.dy
+    )
+    uniform_load = np.repeat(means, np.diff(GRADED_INDICES), axis=0)
+    influence, x, y = compute_stresses(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
-        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=EXTENTS[extent])
-        computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS[extent])
+        expected = half_space_field(uniform_load, influence, uniform_grid, Points(x, y, z), extent=EXTENTS[extent])
+        computed = columns_field(cells, cells, influence, graded_grid, Points(x, y, z), extent=EXTENTS[extent])
         assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 
@@ -114,20 +119,24 @@ def test_single_loaded_column_keeps_position(load: Load, extent: str, column: in
 def test_wide_columns_represent_smooth_load(extent: str) -> None:
     """The fine columns are thirds of columns 0.4 wide; steps of the load would cause an error of 9 %."""
     scale = 1e-3
-    graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
-    lateral_profile = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
-    cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * lateral_profile
+    graded_grid = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED_INDICES], (-scale, scale), 16)
+    lateral_profile = np.sqrt(np.maximum(1 - (graded_grid.y / (0.6 * scale)) ** 2, 0))
+    cells = np.exp(-((graded_grid.x[:, None] / scale - 1.3) ** 2) / 0.2) * lateral_profile
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
-    fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
-    y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
-    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cell_loads.shape[1])
-    along_x = fine.column_means([uniform.x_edges])
-    integral = fine.shape_along_y(along_x, along_x).integral(np.linspace(*y_range, uniform.cells_y + 1))
-    spread = np.diff(integral, axis=1) / uniform.dy
-    influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
+    fine_load = FineCells(load=cells, shape=cells, grid=graded_grid, extent=ends)
+    y_range = (float(fine_load.y_edges[0]), float(fine_load.y_edges[-1]))
+    uniform_grid = Grid(
+        x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine_load.cell_loads.shape[1]
+    )
+    column_loads = fine_load.column_means([uniform_grid.x_edges])
+    integral = fine_load.shape_along_y(column_loads, column_loads).integral(
+        np.linspace(*y_range, uniform_grid.cells_y + 1)
+    )
+    uniform_load = np.diff(integral, axis=1) / uniform_grid.dy
+    influence, x, y = compute_stresses(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
-        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)
-        computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=ends)
+        expected = half_space_field(uniform_load, influence, uniform_grid, Points(x, y, z), extent=ends)
+        computed = columns_field(cells, cells, influence, graded_grid, Points(x, y, z), extent=ends)
         assert np.abs(computed - expected).max() < 0.02 * np.abs(expected).max()
 
 
@@ -141,11 +150,11 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
     ],
 )
 def test_step_edges_of_load(column: int, extent: str, image_sign: int, expected: list[float]) -> None:
-    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
-    cells = np.zeros(graded.shape)
-    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    graded_grid = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED_INDICES], (-1.0, 1.0), 16)
+    cells = np.zeros(graded_grid.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded_grid.y / 0.6) ** 2, 0))
     steps = FineCells(
-        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image_sign=image_sign
+        load=1e-3 * cells, shape=1e-3 * cells, grid=graded_grid, extent=EXTENTS[extent], image_sign=image_sign
     ).step_edges
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
@@ -154,27 +163,32 @@ def test_step_edges_of_load(column: int, extent: str, image_sign: int, expected:
 def test_joint_depths_equal_separate_depths(load: Load) -> None:
     # The field of distant columns is interpolated over the depth; a single depth has no interpolation.
     edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
-    graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
-    cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
-    influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
+    graded_grid = Grid.from_edges(edges, (-1.0, 1.0), 16)
+    cells = np.exp(-graded_grid.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded_grid.y / 0.8) ** 2, 0))
+    influence, y, z = compute_stresses(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
     x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
-    joint_field = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
+    joint_field = columns_field(cells, cells, influence, graded_grid, Points(x, y, z), extent=extent)
     for depth_index in (0, 1, 8, 24):
         depth_field = columns_field(
-            cells, cells, influence, graded, Points(x, y, z[depth_index : depth_index + 1]), extent=extent
+            cells, cells, influence, graded_grid, Points(x, y, z[depth_index : depth_index + 1]), extent=extent
         )
-        # Columns near a point at a small depth have more parts than the columns of all depths.
+        # At a single small depth, columns near a point are split further than for all depths together.
         assert np.abs(joint_field[..., depth_index] - depth_field[..., 0]).max() < 2e-4 * np.abs(joint_field).max()
 
 
 @pytest.mark.parametrize("load", Load)
 def test_distant_field_equals_point_load(load: Load) -> None:
-    graded = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
-    cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
+    graded_grid = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
+    cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded_grid.y / 0.8) ** 2, 0))
     point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
-    force = float((cells * graded.widths[:, None]).sum() * graded.dy)
-    influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
-    computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS["none"])
+    force = float((cells * graded_grid.widths[:, None]).sum() * graded_grid.dy)
+    influence, x, y, z = (
+        compute_stresses(load),
+        np.array([-60.0, 50.0, 70.0]),
+        np.array([0.0, 3.0]),
+        np.array([1.0, 40.0]),
+    )
+    computed = columns_field(cells, cells, influence, graded_grid, Points(x, y, z), extent=EXTENTS["none"])
     expected = columns_field(
         np.full((1, 1), force / 0.01), None, influence, point, Points(x, y, z), extent=EXTENTS["none"]
     )
@@ -184,14 +198,14 @@ def test_distant_field_equals_point_load(load: Load) -> None:
 def test_zero_load_has_zero_field() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
     field = half_space_field(
-        np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
+        np.zeros(grid.shape), compute_stresses(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
     )
     assert field.shape == (6, X.size, grid.y.size, Z.size)
     assert not field.any()
 
 
 @st.composite
-def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
+def draw_graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
     """Columns of any widths, and a load on them."""
     ratios = draw(st.lists(st.floats(0.3, 3.0), min_size=1, max_size=10))
     edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
@@ -200,23 +214,23 @@ def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
 
 
 @settings(max_examples=10)
-@given(grid_and_load=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
+@given(grid_and_load=draw_graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
 def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
     grid, cells = grid_and_load
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
-    influence, y = stresses_of(load), np.array([-0.4, 0.1])
-    original = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
-    mirrored = columns_field(
+    influence, y = compute_stresses(load), np.array([-0.4, 0.1])
+    field_of_cells = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+    mirrored_field = columns_field(
         cells[::-1], None, influence, backwards, Points(LENGTH - X[::-1], y, Z), extent=EXTENTS[extent]
     )
     sign = np.array(influence.sign_along_x)[:, None, None, None]
-    assert np.abs(original - sign * mirrored[:, ::-1]).max() < 1e-8 * np.abs(original).max()
+    assert np.abs(field_of_cells - sign * mirrored_field[:, ::-1]).max() < 1e-8 * np.abs(field_of_cells).max()
 
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-@pytest.mark.parametrize("shaped", [True, False])
-def test_symmetric_load_equals_sum_of_halves(load: Load, extent: str, *, shaped: bool) -> None:
+@pytest.mark.parametrize("is_shaped", [True, False])
+def test_symmetric_load_equals_sum_of_halves(load: Load, extent: str, *, is_shaped: bool) -> None:
     """Positions of a symmetric load are evaluated in one half; some of them lie on edges of its columns."""
     first_half = np.array([0.0, 0.1, 0.25, 0.5, 0.85])
     grid = Grid.from_edges(np.append(first_half, LENGTH - first_half[::-1]), (-1.0, 1.0), 8)
@@ -224,33 +238,33 @@ def test_symmetric_load_equals_sum_of_halves(load: Load, extent: str, *, shaped:
     half_load = shape * (1 + grid.y) * (grid.x < 0.5 * LENGTH)[:, None]
     half_load[grid.cells_x // 2] *= 0.5
     x, y = np.array([0.0, 0.02, 0.25, 0.3, 0.5 * LENGTH, LENGTH - 0.3, 1.75, 1.9, LENGTH]), np.array([-0.4, 0.1])
-    for influence in (stresses_of(load), displacements_of(load, EXTENTS[extent])):
+    for influence in (compute_stresses(load), compute_displacements(load, EXTENTS[extent])):
         first_field, second_field, sum_field = (
-            columns_field(cells, shape if shaped else None, influence, grid, Points(x, y, Z), extent=EXTENTS[extent])
+            columns_field(cells, shape if is_shaped else None, influence, grid, Points(x, y, Z), extent=EXTENTS[extent])
             for cells in (half_load, half_load[::-1], half_load + half_load[::-1])
         )
         assert np.abs(first_field + second_field - sum_field).max() < 1e-11 * np.abs(first_field).max()
 
 
 @settings(max_examples=2)
-@given(grid_and_load=graded_loads())
+@given(grid_and_load=draw_graded_loads())
 def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]) -> None:
     grid, cells = grid_and_load
-    depth, reach, points = 0.6, 40.0, 41
+    depth, half_range, points = 0.6, 40.0, 41
     # The points are dense near the load: y = sinh(s).
-    s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
-    distances, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
+    positions = np.linspace(-1.0, 1.0, points) * np.arcsinh(half_range / depth)
+    distances, steps = depth * np.sinh(positions), depth * np.cosh(positions) * (positions[1] - positions[0])
     field = columns_field(
         cells,
         None,
-        stresses_of(Load.NORMAL),
+        compute_stresses(Load.NORMAL),
         grid,
         Points(1.0 + distances, distances, np.array([depth])),
         extent=EXTENTS["none"],
     )[2, :, :, 0]
     work = -float(steps @ field @ steps)
-    total = float((cells * grid.widths[:, None]).sum() * grid.dy)
-    assert work == pytest.approx(total, rel=2e-3)
+    total_load = float((cells * grid.widths[:, None]).sum() * grid.dy)
+    assert work == pytest.approx(total_load, rel=2e-3)
 
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])
@@ -272,29 +286,31 @@ def make_fine_cells(
     return FineCells(load=load, shape=load, grid=grid, extent=extent, image_sign=image_sign)
 
 
-def split_around(x: float, fine_cells: FineCells, narrow: float = 0.0) -> _SplitRange:
-    return _split_around(x, fine_cells, narrow)
+def split_around(x: float, fine_cells: FineCells, narrow_distance: float = 0.0) -> _SplitRange:
+    return _split_around(x, fine_cells, narrow_distance)
 
 
 @pytest.mark.parametrize("x", OFFSETS)
-@pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
+@pytest.mark.parametrize("narrow_distance", [0.0, 0.15, 5.0])
 @pytest.mark.parametrize("steps", [False, True])
-def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps: bool) -> None:
+def test_results_scale_with_unit_and_position(x: float, narrow_distance: float, *, steps: bool) -> None:
     for ends in (0, 1, 2):
         plain_cells = make_fine_cells(ends=ends, steps=steps)
-        baseline = split_around(x, plain_cells, narrow)
+        baseline = split_around(x, plain_cells, narrow_distance)
         for position, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
             cells = make_fine_cells(position, unit, ends=ends, steps=steps)
-            variant = split_around(unit * (x + position), cells, unit * narrow)
+            scaled_parts = split_around(unit * (x + position), cells, unit * narrow_distance)
             if x == 1e-12 and position:  # equal to 0 within rounding at this position
                 continue
-            assert (variant.start, variant.stop) == (baseline.start, baseline.stop)
-            assert variant.inserted_edges / unit - position == pytest.approx(baseline.inserted_edges, abs=1e-9)
+            assert (scaled_parts.start, scaled_parts.stop) == (baseline.start, baseline.stop)
+            assert scaled_parts.inserted_edges / unit - position == pytest.approx(baseline.inserted_edges, abs=1e-9)
             factor = PRESSURE if unit < 1 else 1.0
-            assert variant.moment_loads(cells) / factor == pytest.approx(baseline.moment_loads(plain_cells), abs=1e-9)
-            for reach in (0.0, 0.3137, 1.0731, 9.0):
-                column_range = variant.range_within(cells.edges, unit * (x + position), unit * reach)
-                assert column_range == baseline.range_within(plain_cells.edges, x, reach)
+            assert scaled_parts.moment_loads(cells) / factor == pytest.approx(
+                baseline.moment_loads(plain_cells), abs=1e-9
+            )
+            for half_range in (0.0, 0.3137, 1.0731, 9.0):
+                column_range = scaled_parts.range_within(cells.edges, unit * (x + position), unit * half_range)
+                assert column_range == baseline.range_within(plain_cells.edges, x, half_range)
 
 
 @pytest.mark.parametrize("x", OFFSETS)
@@ -303,8 +319,8 @@ def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
     cells = make_fine_cells(image_sign=image_sign)
     split_range = split_around(x, cells)
     forces = add_images(cells.far_load, image_sign, cells.extent) * np.diff(cells.edges)[:, None]
-    inserted = cells.column_means([split_range.inserted_edges]) + split_range.moment_loads(cells)
-    inserted_force = (inserted * np.diff(split_range.inserted_edges)[:, None]).sum(axis=0)
+    inserted_loads = cells.column_means([split_range.inserted_edges]) + split_range.moment_loads(cells)
+    inserted_force = (inserted_loads * np.diff(split_range.inserted_edges)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)
     assert inserted_force + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
     assert split_range.inserted_edges[0] == cells.edges[split_range.start]
@@ -323,8 +339,8 @@ def test_narrow_columns_surround_point(x: float) -> None:
     assert widths[column - 1] == pytest.approx(widths[column])
     assert widths[column + 1] == pytest.approx(widths[column])
     fine_edges = cells.x_edges
-    adjacent = np.flatnonzero((fine_edges[:-1] <= x + 1e-12) & (fine_edges[1:] >= x - 1e-12))
-    assert widths[column] == pytest.approx(0.25 * np.diff(fine_edges)[adjacent].min())
+    is_adjacent = np.flatnonzero((fine_edges[:-1] <= x + 1e-12) & (fine_edges[1:] >= x - 1e-12))
+    assert widths[column] == pytest.approx(0.25 * np.diff(fine_edges)[is_adjacent].min())
     low, high = resolved_columns(cells.edges, x)
     assert np.isin(edges[[0, -1]], cells.edges[[max(low - 1, 0), min(high + 1, cells.edges.size - 1)]]).all()
     distant_edges = fine_edges[
@@ -348,15 +364,15 @@ def test_inserted_columns_stop_at_load_step() -> None:
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
-@pytest.mark.parametrize("narrow", [0.0, 0.02])
-def test_rounding_before_edge_equals_edge(narrow: float) -> None:
-    """Both sides of an edge have equal columns, also the outermost edge of the split columns before narrow ones."""
+@pytest.mark.parametrize("narrow_distance", [0.0, 0.02])
+def test_rounding_before_edge_equals_edge(narrow_distance: float) -> None:
+    """Points on both sides of an edge have equal columns, also at the outermost split column next to narrow columns."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
     cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
-    edges_at_edge = split_around(2.0, cells, narrow).inserted_edges
-    for towards in (-np.inf, np.inf):
-        adjacent = split_around(float(np.nextafter(2.0, towards)), cells, narrow).inserted_edges
+    edges_at_edge = split_around(2.0, cells, narrow_distance).inserted_edges
+    for direction in (-np.inf, np.inf):
+        adjacent = split_around(float(np.nextafter(2.0, direction)), cells, narrow_distance).inserted_edges
         assert np.diff(adjacent).min() == pytest.approx(np.diff(edges_at_edge).min(), rel=0.6)
 
 
@@ -372,11 +388,11 @@ def test_point_on_end_adds_no_column() -> None:
 
 def test_range_contains_near_and_replaced_columns() -> None:
     edges = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0])
-    empty = _SplitRange(edges[:1], 2, 2)
-    assert empty.range_within(edges, 3.0, 0.0) == (2, 3)
-    assert empty.range_within(edges, 3.0, 1.5) == (1, 4)
-    assert empty.range_within(edges, -3.0, 1.0) == (0, 2)
-    assert empty.range_within(edges, 9.0, 2.5) == (2, 5)
+    empty_range = _SplitRange(edges[:1], 2, 2)
+    assert empty_range.range_within(edges, 3.0, 0.0) == (2, 3)
+    assert empty_range.range_within(edges, 3.0, 1.5) == (1, 4)
+    assert empty_range.range_within(edges, -3.0, 1.0) == (0, 2)
+    assert empty_range.range_within(edges, 9.0, 2.5) == (2, 5)
     assert _SplitRange(edges[:3], 0, 2).range_within(edges, 4.5, 0.1) == (0, 4)
     assert _SplitRange(edges[3:], 3, 5).range_within(edges, 0.5, 0.1) == (0, 5)
 
@@ -452,28 +468,28 @@ def test_merge_preserves_force_and_moment() -> None:
 
 
 @pytest.mark.parametrize(
-    ("start", "halved"), [(-3.0, True), (-3.25, False), (-2.75, False), (-2.5, True), (1.0, True), (-9.0, True)]
+    ("start", "is_folded"), [(-3.0, True), (-3.25, False), (-2.75, False), (-2.5, True), (1.0, True), (-9.0, True)]
 )
-def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool) -> None:
+def test_offsets_about_zero_are_evaluated_on_one_side(start: float, is_folded: bool) -> None:
     offsets = start + np.arange(7.0)
     distances, indices, signs = fold_offsets(offsets, 1.0)
-    assert np.all(distances >= 0) == halved
+    assert np.all(distances >= 0) == is_folded
     assert signs * distances[indices] == pytest.approx(offsets)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, 0.05])
 def test_fields_unfold_from_distances(offset: float) -> None:
-    aligned = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
-    layer = Layer(aligned, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
+    aligned_points = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
+    layer = Layer(aligned_points, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
     offsets = offset + 0.1 * np.arange(-3.0, 5.0)
     values, expected = (np.stack([np.cos(y), np.sin(y)]) for y in (layer.distances, offsets))
-    unfolded = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
-    assert unfolded == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
+    unfolded_field = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
+    assert unfolded_field == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
 def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
-    """Outside the first and the last edge of a load without images no narrow columns exist."""
+    """No narrow columns lie outside the outermost edges of a load without images."""
     cells = make_fine_cells(ends=0)
     split_range = split_around(x, cells)
     assert (split_range.inserted_edges[0], split_range.inserted_edges[-1]) == (
@@ -483,18 +499,20 @@ def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
     assert (np.diff(split_range.inserted_edges) > 0).all()
 
 
-@pytest.mark.parametrize("uniform", [True, False])
-def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
+@pytest.mark.parametrize("uniform_grid", [True, False])
+def test_columns_do_not_depend_on_the_unit(*, uniform_grid: bool) -> None:
     computed = []
     for unit in (1.0, UNIT):
         cells = make_fine_cells(unit=unit)
         x, y, z = np.array([0.3, 1.3, 2.9]), np.array([-0.1, 0.0, 0.3]), np.linspace(0.01, 6.0, 30)
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
-        computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
-    baseline, variant = computed
+        computed.append(split_columns(load, None if uniform_grid else load, cells.grid, cells.extent, 1, axes))
+    baseline, scaled_parts = computed
     assert len({tuple(part.depth_indices.size for part in columns.groups) for columns in computed}) == 1
-    for jumps_of_parts, scaled_jumps_of_parts in zip(baseline.jumps, variant.jumps, strict=True):
+    for jumps_of_parts, scaled_jumps_of_parts in zip(baseline.jumps, scaled_parts.jumps, strict=True):
         for part, jumps, scaled_jumps in zip(baseline.groups, jumps_of_parts, scaled_jumps_of_parts, strict=True):
-            assert [item.edges.size for item in jumps] == [item.edges.size for item in scaled_jumps]
-            for item, scaled in () if part.radius else zip(jumps, scaled_jumps, strict=True):
-                assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
+            assert [column_jumps.edges.size for column_jumps in jumps] == [
+                column_jumps.edges.size for column_jumps in scaled_jumps
+            ]
+            for column_jumps, scaled_column_jumps in () if part.radius else zip(jumps, scaled_jumps, strict=True):
+                assert scaled_column_jumps.edges / UNIT == pytest.approx(column_jumps.edges, abs=1e-9)

@@ -1,4 +1,4 @@
-"""Finer cells under a load: they carry its force at any position of the body, with its images, in any unit."""
+"""Finer cells under a load: force, moments and images of the load, at any position of the body and in any unit."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from contactstudy.kernels.load import Load
 from contactstudy.kernels.smooth_load import SmoothLoad
 
 EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
-UNIFORM = np.linspace(0.0, 3.8, 10)
+UNIFORM_EDGES = np.linspace(0.0, 3.8, 10)
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure: powers of two, which change no digits."""
+"""Units of length and pressure: powers of two have no rounding errors."""
 
 
-def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
+def make_inclined_pressure(x: FloatArray, y: FloatArray) -> FloatArray:
     """Inclined pressure of a contact that reaches the first end of the body and not the second end."""
     position = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
     return np.asarray(np.sqrt(np.maximum(position, 0.0)) * (1 + 0.3 * x[:, None]))
@@ -45,42 +45,54 @@ def make_fine_cells(
 ) -> FineCells:
     """A load on a body with a number of ends."""
     grid = Grid.between(unit * (edges + offset), (-1.2 * unit, 1.2 * unit), 12)
-    cell_loads = pressure * load_on(grid.x / unit - offset, grid.y / unit)
+    cell_loads = pressure * make_inclined_pressure(grid.x / unit - offset, grid.y / unit)
     extent = (unit * offset if ends else -np.inf, unit * (offset + 3.8) if ends == 2 else np.inf)
     return FineCells(load=cell_loads, shape=cell_loads, grid=grid, extent=extent, image_sign=image_sign)
 
 
 @pytest.mark.parametrize(
     ("ends", "image_sign", "edges"),
-    [(0, 1, UNIFORM), (1, -1, UNIFORM), (2, 1, UNIFORM), (0, -1, EDGES), (1, 1, EDGES), (2, -1, EDGES)],
+    [
+        (0, 1, UNIFORM_EDGES),
+        (1, -1, UNIFORM_EDGES),
+        (2, 1, UNIFORM_EDGES),
+        (0, -1, EDGES),
+        (1, 1, EDGES),
+        (2, -1, EDGES),
+    ],
 )
 def test_results_scale_with_unit_and_position(ends: int, image_sign: int, edges: FloatArray) -> None:
     baseline = make_fine_cells(edges=edges, image_sign=image_sign, ends=ends)
     for position, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
-        variant = make_fine_cells(
+        scaled_cells = make_fine_cells(
             edges=edges, image_sign=image_sign, ends=ends, offset=position, unit=unit, pressure=pressure
         )
         for name in ("x_edges", "edges", "step_edges"):
-            assert getattr(variant, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), name
-        for computed, expected in ((variant.far_load, baseline.far_load), (variant.cell_loads, baseline.cell_loads)):
+            assert getattr(scaled_cells, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), (
+                name
+            )
+        for computed, expected in (
+            (scaled_cells.far_load, baseline.far_load),
+            (scaled_cells.cell_loads, baseline.cell_loads),
+        ):
             assert computed / pressure == pytest.approx(expected, abs=1e-9)
         z = np.array([0.0, 0.1, 0.5, 1.19, 1.21, 2.5, 2.6, 4.0])
-        assert variant.is_refined_along_y(unit * z).tolist() == baseline.is_refined_along_y(z).tolist()
-        refined = [
+        assert scaled_cells.is_refined_along_y(unit * z).tolist() == baseline.is_refined_along_y(z).tolist()
+        finer_loads = [
             [
                 cells.end_load(),
                 cells.fine_load(0.03 * size),
-                *([cells.coarse_load(fine_x=False)] if edges is UNIFORM else []),
+                *([cells.coarse_load(fine_x=False)] if edges is UNIFORM_EDGES else []),
             ]
-            for cells, size in ((variant, unit), (baseline, 1.0))
+            for cells, size in ((scaled_cells, unit), (baseline, 1.0))
         ]
-        for (computed, grid), (expected, baseline_grid) in zip(*refined, strict=True):
+        for (computed, grid), (expected, baseline_grid) in zip(*finer_loads, strict=True):
             assert computed / pressure == pytest.approx(expected, abs=1e-9)
             assert grid.x_edges / unit - position == pytest.approx(baseline_grid.x_edges, abs=1e-9)
             assert np.array(grid.y_range) / unit == pytest.approx(baseline_grid.y_range)
 
 
-@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM_EDGES], ids=["graded", "uniform"])
 def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     cells = make_fine_cells(edges=edges)
     assert cells.is_refined_along_y(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
@@ -94,7 +106,7 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     assert cells.x_edges.size == 3 * PARTS_X * cells.grid.cells_x + 1  # with images
 
 
-@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM_EDGES], ids=["graded", "uniform"])
 def test_constant_load_has_whole_columns(edges: FloatArray) -> None:
     grid = make_fine_cells(edges=edges).grid
     shape = np.where(np.abs(grid.y) < 0.7, 1.0, 0.0) * np.ones(grid.shape)
@@ -109,42 +121,42 @@ def test_constant_load_has_whole_columns(edges: FloatArray) -> None:
 def test_images_contain_mirrored_load(image_sign: int) -> None:
     """The means over columns between any edges include the images."""
     cells = make_fine_cells(image_sign=image_sign)
-    inner_edges = np.array([0.1, 0.3, 0.35, 0.8])
-    expected = cells.column_means([inner_edges])
-    assert cells.column_means([-inner_edges[::-1]])[::-1] == pytest.approx(image_sign * expected)
-    outer_edges = np.array([3.0, 3.1, 3.5, 3.75])
-    assert cells.column_means([7.6 - outer_edges[::-1]])[::-1] == pytest.approx(
-        image_sign * cells.column_means([outer_edges])
+    edges_near_first_end = np.array([0.1, 0.3, 0.35, 0.8])
+    expected = cells.column_means([edges_near_first_end])
+    assert cells.column_means([-edges_near_first_end[::-1]])[::-1] == pytest.approx(image_sign * expected)
+    edges_near_second_end = np.array([3.0, 3.1, 3.5, 3.75])
+    assert cells.column_means([7.6 - edges_near_second_end[::-1]])[::-1] == pytest.approx(
+        image_sign * cells.column_means([edges_near_second_end])
     )
     # The column over an end contains the load and its image by half.
     assert cells.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
         np.stack([image_sign * cells.cell_loads[0], cells.cell_loads[0]])
     )
-    assert cells.column_means([inner_edges, outer_edges]) == pytest.approx(
-        np.vstack([expected, cells.column_means([outer_edges])])
+    assert cells.column_means([edges_near_first_end, edges_near_second_end]) == pytest.approx(
+        np.vstack([expected, cells.column_means([edges_near_second_end])])
     )
 
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
 def test_far_load_keeps_force_and_moment(ends: int) -> None:
-    """The far load has the moments of the smooth load with its images; without images border cells keep theirs."""
+    """The far load has force and moment of the smooth load with its images."""
     cells = make_fine_cells(ends=ends)
-    smooth = SmoothLoad.of(cells.cell_loads.T, cells.grid.x_edges).shape_loads(cells.cell_loads.T)
+    smooth_load = SmoothLoad.of(cells.cell_loads.T, cells.grid.x_edges).shape_loads(cells.cell_loads.T)
     forces = add_images(cells.far_load, 1, cells.extent) * np.diff(cells.edges)[:, None]
-    middles = 0.5 * (cells.edges[1:] + cells.edges[:-1])
+    centres = 0.5 * (cells.edges[1:] + cells.edges[:-1])
     image_count = 1 + (ends > 0) + (ends > 1)
-    complete = (cells.cell_loads * cells.grid.widths[:, None]).sum(axis=0)
-    assert forces.sum(axis=0) == pytest.approx(image_count * complete)
+    column_forces = (cells.cell_loads * cells.grid.widths[:, None]).sum(axis=0)
+    assert forces.sum(axis=0) == pytest.approx(image_count * column_forces)
     if not ends:
-        about_middles = smooth.moments + cells.grid.x * smooth.cell_means * cells.grid.widths
-        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(about_middles.sum(axis=1))
-    elif ends == 1:  # about the end the images' moments are opposite
-        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(np.zeros(complete.size), abs=1e-9)
+        column_moments = smooth_load.moments + cells.grid.x * smooth_load.cell_means * cells.grid.widths
+        assert (forces * centres[:, None]).sum(axis=0) == pytest.approx(column_moments.sum(axis=1))
+    elif ends == 1:  # about the end the moments of load and image cancel
+        assert (forces * centres[:, None]).sum(axis=0) == pytest.approx(np.zeros(column_forces.size), abs=1e-9)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, -0.03, 0.07, -0.1, 0.1])
 def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
-    fine_cells = make_fine_cells(edges=UNIFORM, ends=1)
+    fine_cells = make_fine_cells(edges=UNIFORM_EDGES, ends=1)
     cells, grid = fine_cells.fine_load(offset)
     step = fine_cells.grid.dy / PARTS_Y
     assert grid.dy == pytest.approx(step)
@@ -156,26 +168,28 @@ def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
     force = cells.sum(axis=1) * step * grid.widths
     expected = fine_cells.cell_loads.sum(axis=1) * fine_cells.grid.dy * fine_cells.grid.widths
     assert force.sum() == pytest.approx(expected.sum())
-    complete = force.reshape(fine_cells.grid.cells_x, -1).sum(axis=1)
-    assert complete == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
+    cell_forces = force.reshape(fine_cells.grid.cells_x, -1).sum(axis=1)
+    assert cell_forces == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
     moment = (cells.T * grid.widths).sum(axis=1) @ grid.y * step
     assert moment == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("narrow", [0.0, 0.3, 1.0])
-def test_resolved_columns_are_wide_over_distance(narrow: float) -> None:
+@pytest.mark.parametrize("min_width", [0.0, 0.3, 1.0])
+def test_resolved_columns_are_wide_over_distance(min_width: float) -> None:
     rng = np.random.default_rng(0)
     for _ in range(200):
         edges = 5.0 + np.cumsum(np.cumprod(rng.uniform(0.4, 2.5, 12)))
         x = float(rng.uniform(edges[0], edges[-1]))
         widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
-        low, high = resolved_columns(edges, x, narrow)
-        first = last = int(distance.argmin())
-        while first > 0 and widths[first - 1] > MIN_RESOLVED_WIDTH * distance[first - 1]:
-            first -= 1
-        while last + 1 < widths.size and widths[last + 1] > MIN_RESOLVED_WIDTH * distance[last + 1]:
-            last += 1
-        resolved = [index for index in range(first, last + 1) if widths[index] > narrow]
+        low, high = resolved_columns(edges, x, min_width)
+        first_column = last_column = int(distance.argmin())
+        while first_column > 0 and widths[first_column - 1] > MIN_RESOLVED_WIDTH * distance[first_column - 1]:
+            first_column -= 1
+        while (
+            last_column + 1 < widths.size and widths[last_column + 1] > MIN_RESOLVED_WIDTH * distance[last_column + 1]
+        ):
+            last_column += 1
+        resolved = [index for index in range(first_column, last_column + 1) if widths[index] > min_width]
         assert (low, high) == ((resolved[0], resolved[-1] + 1) if resolved else (low, low))
 
 
@@ -184,18 +198,18 @@ def test_coarse_cells_keep_six_moments(parts: int) -> None:
     fine_loads = np.random.default_rng(0).random((4 * parts, 2))
     loads = coarsen(fine_loads, parts)
 
-    def moments(values: FloatArray, edges: FloatArray) -> FloatArray:
+    def compute_moments(values: FloatArray, edges: FloatArray) -> FloatArray:
         powers = [np.diff(edges ** (order + 1)) / (order + 1) for order in range(7)]
         return np.asarray(powers @ values)
 
-    expected = moments(fine_loads, np.linspace(0.0, 4.0, 4 * parts + 1))
-    assert moments(loads, np.arange(-3.0, 8.0)) == pytest.approx(expected, rel=1e-9)
+    expected = compute_moments(fine_loads, np.linspace(0.0, 4.0, 4 * parts + 1))
+    assert compute_moments(loads, np.arange(-3.0, 8.0)) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize(("ends", "image_sign"), [(0, 1), (1, -1), (2, 1)])
 def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
-    """Loads of one shape add up, also outside the shape; a load with its own shape is the smooth form, bit for bit."""
-    fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image_sign=image_sign)
+    """Loads of one shape add up, also outside the shape; half of the load has half of the values, bit for bit."""
+    fine_cells = make_fine_cells(edges=UNIFORM_EDGES, ends=ends, image_sign=image_sign)
     rng = np.random.default_rng(1)
     first_load, second_load = (
         rng.random(fine_cells.grid.shape),
@@ -226,18 +240,18 @@ def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
 
 
 @pytest.mark.parametrize("crown", [0.0, 0.04])
-@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM_EDGES], ids=["graded", "uniform"])
 def test_tractions_on_the_top_keep_their_bound(edges: FloatArray, crown: float) -> None:
     """The traction is at most the pressure, at any ratios of the cells and any position, also under a flat pressure."""
     grid = Grid.between(edges, (-1.2, 1.2), 20)
-    middle = 0.5 * (edges[0] + edges[-1])
-    pressure = np.sqrt(np.maximum(1 - crown * (grid.x[:, None] - middle) ** 2 - grid.y**2, 0.0))
+    mid_x = 0.5 * (edges[0] + edges[-1])
+    pressure = np.sqrt(np.maximum(1 - crown * (grid.x[:, None] - mid_x) ** 2 - grid.y**2, 0.0))
     rng = np.random.default_rng(0)
-    bent = np.clip(np.abs(grid.y - 0.3) * 2 + 0.1 * grid.x[:, None], 0.0, 1.0)
+    bent_ratio = np.clip(np.abs(grid.y - 0.3) * 2 + 0.1 * grid.x[:, None], 0.0, 1.0)
     x = np.concatenate([grid.x, (edges[:-1, None] + np.diff(edges)[:, None] * [0.1, 0.3, 0.9]).ravel()])
     for ratio, angle in (
         (rng.random(grid.shape) ** 0.2, rng.uniform(0.0, 7.0, grid.shape)),
-        (bent, 0.5 * grid.x[:, None]),
+        (bent_ratio, 0.5 * grid.x[:, None]),
     ):
         loads = {
             Load.NORMAL: pressure,
@@ -246,14 +260,14 @@ def test_tractions_on_the_top_keep_their_bound(edges: FloatArray, crown: float) 
         }
         for positions in (grid.x, np.sort(x)):
             points = Points(positions, np.linspace(-0.95, 0.95, 61), np.zeros(1))
-            top = {
+            top_stresses = {
                 load: half_space_field(
                     values, stress_influence(load, 0.3), grid, points, extent=(-np.inf, np.inf), shape=pressure
                 )
                 for load, values in loads.items()
             }
-            normal = -top[Load.NORMAL][2]
-            traction = np.hypot(top[Load.ALONG_X][4], top[Load.ALONG_Y][5])
+            normal = -top_stresses[Load.NORMAL][2]
+            traction = np.hypot(top_stresses[Load.ALONG_X][4], top_stresses[Load.ALONG_Y][5])
             is_off_border = normal > 0.05 * normal.max()
             assert (traction / normal)[is_off_border].max() < 1.0005
 
@@ -261,8 +275,8 @@ def test_tractions_on_the_top_keep_their_bound(edges: FloatArray, crown: float) 
 @pytest.mark.parametrize("offset", [0.0, 0.03])
 def test_fine_cells_extend_to_load_border(offset: float) -> None:
     """The fine cells include the last cells of the grid along y."""
-    grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
-    cells = load_on(grid.x, 0.6 * grid.y)
+    grid = Grid.between(UNIFORM_EDGES, (-1.2, 1.2), 12)
+    cells = make_inclined_pressure(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()
     computed, fine_cells = FineCells(load=cells, shape=cells, grid=grid).fine_load(offset)
     assert computed.sum() * fine_cells.cell_area == pytest.approx(cells.sum() * grid.cell_area)

@@ -9,7 +9,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels.images import cell_kernel, image_kernel, interpolation_points, mirrored_kernel
 
 
-def corner_at(depth: float):  # type: ignore[no-untyped-def]
+def make_corner(depth: float):  # type: ignore[no-untyped-def]
     """Corner function of ``h / R**3``, the decaying influence of a load on a point below."""
 
     def corner(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -19,11 +19,11 @@ def corner_at(depth: float):  # type: ignore[no-untyped-def]
 
 
 @pytest.mark.parametrize(("length", "unit"), [(0.5, 2.0**-17), (2.0, 1.0), (12.0, 2.0**17)])
-def test_image_sum_converges(length: float, unit: float) -> None:
+def test_kernel_with_images_equals_sum_over_images(length: float, unit: float) -> None:
     dx, dy = 0.25 * unit, 0.2 * unit
     x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)
     y = dy * np.arange(-12, 13.0)
-    corner = corner_at(0.3 * unit)
+    corner = make_corner(0.3 * unit)
     image_numbers = np.concatenate([-np.arange(1500, 0, -1), np.arange(1, 1501)])
     image_sum = np.zeros((x.size, y.size))
     for image_number in image_numbers:
@@ -42,16 +42,16 @@ def test_image_sum_converges(length: float, unit: float) -> None:
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
-def test_chebyshev_interpolation_of_distant_loads(unit: float, middle: float) -> None:
+def test_interpolation_of_distant_loads_has_tolerance(unit: float, middle: float) -> None:
     positions = unit * (middle + np.linspace(-2.0, 2.0, 200))
     points, matrix = interpolation_points(positions, 2.0 * unit, 1e-6)
     assert matrix is not None
     assert points.size < 20
     assert points.min() >= positions.min()
     assert points.max() <= positions.max()
-    for load in (middle - 4.0, middle + 4.0):
-        assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(
-            1 / np.abs(positions / unit - load), abs=1e-6
+    for load_position in (middle - 4.0, middle + 4.0):
+        assert matrix @ (1 / np.abs(points / unit - load_position)) == pytest.approx(
+            1 / np.abs(positions / unit - load_position), abs=1e-6
         )
     points, no_matrix = interpolation_points(positions[:4], 2.0 * unit, 1e-12)
     assert no_matrix is None

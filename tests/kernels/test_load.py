@@ -1,4 +1,4 @@
-"""Closed forms of the loaded rectangle: stresses, displacements, and the sum over mirror images."""
+"""Loaded rectangle: stresses and displacements against closed forms, and the sum over mirror images."""
 
 from __future__ import annotations
 
@@ -30,9 +30,13 @@ from contactstudy.verification import closed_forms as ref
 CORNERS = {"normal": normal_corner, "tangential": tangential_corner}
 
 
-def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
+def compute_stress_of_rectangle(
+    kind: str, x: float, y: float, z: float, size: tuple[float, float] = (1.0, 1.0)
+) -> np.ndarray:
     """Stresses under a unit load on a rectangle about the origin."""
-    x_edges, y_edges = (c + 0.5 * s * np.array([-1.0, 1.0]) for c, s in zip((x, y), size, strict=True))
+    x_edges, y_edges = (
+        centre + 0.5 * side_length * np.array([-1.0, 1.0]) for centre, side_length in zip((x, y), size, strict=True)
+    )
     corner = CORNERS[kind](x_edges[:, None], y_edges[None, :], z, 0.3)
     return np.diff(np.diff(corner, axis=-1), axis=-2)[:, 0, 0]
 
@@ -41,8 +45,8 @@ def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float]
 def test_distant_rectangle_equals_point_load(kind: str) -> None:
     """The field equals Boussinesq's and Cerruti's."""
     point = (6.0, -8.0, 5.0)
-    point_stress = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
-    computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
+    point_stress = ref.point_load(*point, poisson=0.3, **{load_kind: float(load_kind == kind) for load_kind in CORNERS})
+    computed = compute_stress_of_rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
     assert computed == pytest.approx([float(point_stress[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
 
 
@@ -50,13 +54,15 @@ def test_distant_rectangle_equals_point_load(kind: str) -> None:
 def test_stress_is_in_equilibrium(kind: str, x: float, y: float, z: float) -> None:
     step = 1e-3
 
-    def slope(axis: int) -> np.ndarray:
-        up, down = np.array([x, y, z]), np.array([x, y, z])
-        up[axis] += step
-        down[axis] -= step
-        return (rectangle(kind, *up) - rectangle(kind, *down)) / (2 * step)
+    def compute_slope(axis: int) -> np.ndarray:
+        upper_point, lower_point = np.array([x, y, z]), np.array([x, y, z])
+        upper_point[axis] += step
+        lower_point[axis] -= step
+        return (compute_stress_of_rectangle(kind, *upper_point) - compute_stress_of_rectangle(kind, *lower_point)) / (
+            2 * step
+        )
 
-    x_derivative, y_derivative, z_derivative = slope(0), slope(1), slope(2)
+    x_derivative, y_derivative, z_derivative = compute_slope(0), compute_slope(1), compute_slope(2)
     assert abs(x_derivative[0] + y_derivative[3] + z_derivative[4]) < 1e-3
     assert abs(x_derivative[3] + y_derivative[1] + z_derivative[5]) < 1e-3
     assert abs(x_derivative[4] + y_derivative[5] + z_derivative[2]) < 1e-3
@@ -64,7 +70,10 @@ def test_stress_is_in_equilibrium(kind: str, x: float, y: float, z: float) -> No
 
 @pytest.mark.parametrize(("kind", "component"), [("normal", 2), ("tangential", 5)])
 def test_surface_traction_equals_load(kind: str, component: int) -> None:
-    inside_stress, outside_stress = rectangle(kind, 0.2, -0.3, 0.0), rectangle(kind, 0.9, 0.2, 0.0)
+    inside_stress, outside_stress = (
+        compute_stress_of_rectangle(kind, 0.2, -0.3, 0.0),
+        compute_stress_of_rectangle(kind, 0.9, 0.2, 0.0),
+    )
     for traction_component in (2, 4, 5):
         assert inside_stress[traction_component] == pytest.approx(
             -1.0 if traction_component == component else 0.0, abs=1e-12
@@ -81,14 +90,14 @@ def test_corners_and_edges_have_finite_stress() -> None:
 @pytest.mark.parametrize("kind", sorted(CORNERS))
 @pytest.mark.parametrize("depth", [0.0, 0.4])
 @pytest.mark.parametrize(
-    ("length", "dy", "cells_y", "cells_x", "allowed"),
+    ("length", "dy", "cells_y", "cells_x", "tolerance"),
     [(2.0, 0.2, 3, 20, 1e-8), (0.2, 0.12, 30, 20, 3e-8), (2.0, 0.2, 3, 2, 1e-5)],
     ids=["long", "thin", "two cells"],
 )
 def test_kernel_includes_all_images(
-    kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, allowed: float
+    kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, tolerance: float
 ) -> None:
-    """The kernel equals a sum over many images, extrapolated to infinitely many, also at a distance of many lengths."""
+    """The reference is a sum over 1600 images, extrapolated to infinitely many."""
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
@@ -97,21 +106,21 @@ def test_kernel_includes_all_images(
         sum(images.cell_kernel(corner, x + 2 * length * image_number, y, dx, dy) for image_number in image_numbers)
         for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
-    limit = near_images + 2 * far_images
-    # Far below the length of the body the influence of one cell's load is almost zero.
-    assert np.abs(computed - limit).max() < allowed / length
+    far_limit = near_images + 2 * far_images
+    # The tolerance is over the level of the image sum, 1 / length.
+    assert np.abs(computed - far_limit).max() < tolerance / length
 
 
 @pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
-def test_chebyshev_interpolation_of_far_images(span: float) -> None:
+def test_interpolation_of_far_images_has_default_tolerance(span: float) -> None:
     length, positions = 1.0, np.linspace(2.0, 2.0 + span, 200)
     points, matrix = images.interpolation_points(positions, length)
     assert matrix is not None
     assert points.size < 120
-    for away in (1.0 - length, 2.0 + span + length):
-        expected = 1 / (positions - away)
+    for image_position in (1.0 - length, 2.0 + span + length):
+        expected = 1 / (positions - image_position)
         assert (
-            np.abs(matrix @ (1 / (points - away)) - expected).max()
+            np.abs(matrix @ (1 / (points - image_position)) - expected).max()
             < 2 * images.INTERPOLATION_ERROR * np.abs(expected).max()
         )
 
@@ -126,7 +135,7 @@ def test_coincident_points_are_merged() -> None:
 NU = 0.3
 
 
-def mean_on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
+def compute_mean_on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
     edges_x, edges_y = (centre + 0.5 * length * np.array([-1, 1]) for centre, length in zip((x, y), size, strict=True))
     corners = corner(edges_x[:, None], edges_y[None, :], z, NU)
     return np.diff(np.diff(corners, axis=1), axis=2)[:, 0, 0] / (size[0] * size[1])
@@ -136,19 +145,19 @@ def mean_on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
 def test_small_rectangle_equals_point_load_displacements(point):
     x, y, z = point
     r = np.sqrt(x * x + y * y + z * z)
-    free = 1 - 2 * NU
-    inward = z / r**3 - free / (r * (r + z))
+    compressibility = 1 - 2 * NU
+    radial_term = z / r**3 - compressibility / (r * (r + z))
     np.testing.assert_allclose(
-        mean_on_rectangle(normal_displacement_inside, *point),
-        [x * inward, y * inward, 2 * (1 - NU) / r + z * z / r**3],
+        compute_mean_on_rectangle(normal_displacement_inside, *point),
+        [x * radial_term, y * radial_term, 2 * (1 - NU) / r + z * z / r**3],
         rtol=1e-4,
         atol=1e-6,
     )
-    axial_kernel = 1 / r + y * y / r**3 + free * (1 / (r + z) - y * y / (r * (r + z) ** 2))
-    lateral_kernel = x * y * (1 / r**3 - free / (r * (r + z) ** 2))
+    axial_kernel = 1 / r + y * y / r**3 + compressibility * (1 / (r + z) - y * y / (r * (r + z) ** 2))
+    lateral_kernel = x * y * (1 / r**3 - compressibility / (r * (r + z) ** 2))
     np.testing.assert_allclose(
-        mean_on_rectangle(tangential_displacement_inside, *point),
-        [lateral_kernel, axial_kernel, y * (z / r**3 + free / (r * (r + z)))],
+        compute_mean_on_rectangle(tangential_displacement_inside, *point),
+        [lateral_kernel, axial_kernel, y * (z / r**3 + compressibility / (r * (r + z)))],
         rtol=1e-4,
         atol=1e-6,
     )
@@ -158,13 +167,13 @@ def test_small_rectangle_equals_point_load_displacements(point):
 def test_displacements_inside_match_surface_kernel(load: Load):
     x, y = np.meshgrid([-0.7, 0.0, 0.2, 1.1], [-0.3, 0.0, 0.4, 0.9], indexing="ij")
 
-    def mixed_difference(corner_values):
+    def compute_mixed_difference(corner_values):
         return np.diff(np.diff(corner_values, axis=0), axis=1)
 
     inside_corners = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
     for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside_corners, strict=True):
-        computed = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
-        np.testing.assert_allclose(computed, mixed_difference(expected), rtol=1e-12, atol=1e-15)
+        computed = compute_mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
+        np.testing.assert_allclose(computed, compute_mixed_difference(expected), rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("load", list(Load))
@@ -180,29 +189,29 @@ EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.2, 0.5,
 
 
 def compute_displacements(
-    load: Load, edges: FloatArray, *, offset: float = 0.0, unit: float = 1.0, smooth: bool = True
+    load: Load, edges: FloatArray, *, offset: float = 0.0, unit: float = 1.0, is_smooth: bool = True
 ) -> FloatArray:
     grid = Grid.between(unit * (edges + offset), (-unit, unit), 8)
     pressure = np.sqrt(np.maximum(1 - (grid.y / unit / 0.8) ** 2, 0.0)) * (1 + 0.3 * (grid.x[:, None] / unit - offset))
     extent = (unit * offset, unit * (offset + 3.0))
     x, y, z = unit * (np.array([0.0, 0.7, 2.2]) + offset), unit * np.array([-0.1, 0.4]), unit * np.array([0.05, 0.6])
-    shape = pressure if smooth else None
+    shape = pressure if is_smooth else None
     influence = displacement_influence(load, 0.3, extent[1] - extent[0], 30.0 * unit)
     return half_space_field(pressure, influence, grid, Points(x, y, z), extent=extent, shape=shape)
 
 
 @pytest.mark.parametrize("name", EDGES)
 @pytest.mark.parametrize("load", Load)
-@pytest.mark.parametrize("smooth", [True, False])
-def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: bool) -> None:
-    baseline = compute_displacements(load, EDGES[name], smooth=smooth)
+@pytest.mark.parametrize("is_smooth", [True, False])
+def test_results_scale_with_unit_and_position(load: Load, name: str, *, is_smooth: bool) -> None:
+    baseline = compute_displacements(load, EDGES[name], is_smooth=is_smooth)
     # Uniform cells of a body with ends begin at 0.
     for position, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
-        variant = compute_displacements(load, EDGES[name], offset=position, unit=unit, smooth=smooth)
-        assert variant / unit == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
+        scaled_displacements = compute_displacements(load, EDGES[name], offset=position, unit=unit, is_smooth=is_smooth)
+        assert scaled_displacements / unit == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
-def test_unit_traction_on_the_top() -> None:
+def test_unit_traction_on_top_equals_one() -> None:
     edge = np.array([-1.0, 1.0])
     for corner, component in ((STRESS_CORNERS[Load.ALONG_Y], 5), (STRESS_CORNERS[Load.ALONG_X], 4)):
         corner_values = corner(edge[:, None], edge[None, :], 0.0, 0.3)

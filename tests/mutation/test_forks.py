@@ -1,4 +1,4 @@
-"""Changes in forked processes: only the tests that reach a change detect it."""
+"""Mutation run in forked processes."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pytest
 
 from benchmarks.mutation.__main__ import read_notes
 from benchmarks.mutation.equivalent import EQUIVALENT
-from benchmarks.mutation.mutants import ROOT, all_mutants
+from benchmarks.mutation.mutants import ROOT, list_mutants
 
 
 @pytest.mark.system
-def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
+def test_mutation_run_tests_each_change_by_reaching_tests(tmp_path: Path) -> None:
     command = [
         sys.executable,
         "-m",
@@ -32,8 +32,8 @@ def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
         read_notes(tmp_path / "reached.jsonl", "test"),
         read_notes(tmp_path / "tried.jsonl", "change"),
     )
-    assert {bool(note["lines"]) for test, note in reached_notes.items() if "slab" in test} == {True}
-    assert set(tried_notes) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key} - set(
+    assert {bool(record["lines"]) for test, record in reached_notes.items() if "slab" in test} == {True}
+    assert set(tried_notes) == {mutant.key for mutant in list_mutants() if "slab_factors" in mutant.key} - set(
         EQUIVALENT
     )
-    assert all("test_equations_slab" in note["by"] for note in tried_notes.values())
+    assert all("test_equations_slab" in record["by"] for record in tried_notes.values())

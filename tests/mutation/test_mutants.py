@@ -1,4 +1,4 @@
-"""Mutants change one sign, factor or comparison of a computation, and nothing else."""
+"""Mutants: single changes of signs, factors and comparisons."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import functools
 import pytest
 
 from benchmarks.mutation.equivalent import EQUIVALENT
-from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants, mutants_of
+from benchmarks.mutation.mutants import PACKAGES, Mutant, list_mutants, list_mutants_of_function
 
 SOURCE = '''"""A module: 1.5 + 2.5."""
 LIMIT = 2.5
@@ -21,8 +21,8 @@ def function(x: float | None = -1.5) -> float:
 '''
 
 
-def test_mutants_of_source() -> None:
-    mutants = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+def test_mutants_of_source_change_arithmetic_only() -> None:
+    mutants = [(mutant.description, len(mutant.lines)) for mutant in list_mutants_of_function("a.py", SOURCE)]
     assert sorted(mutants) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
         ("* (2.0 - x))  ->  * (2.2 - x))", 2),
@@ -35,19 +35,19 @@ def test_mutants_of_source() -> None:
 
 @pytest.fixture(scope="module")
 def mutants() -> list[Mutant]:
-    return all_mutants()
+    return list_mutants()
 
 
 def test_every_mutant_is_another_program(mutants: list[Mutant]) -> None:
     assert len(mutants) > 1000
-    rooms = {"/".join(mutant.file.split("/")[1:-1]) for mutant in mutants}
-    assert rooms == {*PACKAGES, "contact/normal", "contact/refinement", "contact/rolling"}
+    packages = {"/".join(mutant.file.split("/")[1:-1]) for mutant in mutants}
+    assert packages == {*PACKAGES, "contact/normal", "contact/refinement", "contact/rolling"}
     dump = functools.cache(lambda text: ast.dump(ast.parse(text)))
     for mutant in mutants[::25]:
         assert dump(mutant.changed) != dump(mutant.source), mutant
 
 
-def test_changes_have_different_names(mutants: list[Mutant]) -> None:
+def test_keys_of_mutants_are_unique(mutants: list[Mutant]) -> None:
     assert len({mutant.key for mutant in mutants}) == len(mutants)
 
 

@@ -1,4 +1,4 @@
-"""The slab's factors against their closed forms, small arguments included."""
+"""The factors of the slab against closed forms, also at small arguments."""
 
 from __future__ import annotations
 

@@ -46,10 +46,10 @@ def test_field_does_not_depend_on_further_positions(length: float) -> None:
 def count_evaluated_points(point_sets: list[Points]) -> int:
     """Total number of points over all evaluations of a field."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
-    sizes = []
+    point_counts = []
 
-    def beside(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
-        sizes.append(x.size * z.size)
+    def count_points(loads: AuxiliaryLoads, x: FloatArray, z: FloatArray) -> FloatArray:
+        point_counts.append(x.size * z.size)
         return STRESS.face_load_field(loads, x, z)
 
     problem = EndProblem(
@@ -60,12 +60,12 @@ def count_evaluated_points(point_sets: list[Points]) -> int:
         grid=grid,
         resolution=Resolution(),
     )
-    end_fields(problem, replace(STRESS, face_load_field=beside), point_sets)
-    return sum(sizes)
+    end_fields(problem, replace(STRESS, face_load_field=count_points), point_sets)
+    return sum(point_counts)
 
 
 def test_evaluation_excludes_points_of_other_sets() -> None:
-    """A line along the top and a line into the depth are not evaluated as their rectangle."""
+    """A line along the top and a line along the depth are evaluated separately, not on their common rectangle."""
     y, x, z = np.zeros(1), np.linspace(0.1, 1.0, 60), np.linspace(0.1, 1.0, 60)
     lines = [Points(x, y, z[:1]), Points(x[:1], y, z)]
     assert count_evaluated_points(lines) < 1.5 * sum(count_evaluated_points([line]) for line in lines)
@@ -84,7 +84,7 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     single_cell_load[2:5, 7:9] = 1.0
     position = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
-    def fields(cell_loads: FloatArray) -> list[FloatArray]:
+    def compute_fields(cell_loads: FloatArray) -> list[FloatArray]:
         problem = EndProblem(
             length=length, poisson=0.3, cell_loads=cell_loads, loads=loads, grid=grid, resolution=Resolution()
         )
@@ -92,6 +92,8 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
         (displacement,) = end_fields(problem, DISPLACEMENT, [position], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
-    load_fields = [fields(cell_loads) for cell_loads in (tilted_load, random_load, single_cell_load)]
-    for *terms, total in zip(*load_fields, fields(tilted_load + random_load + single_cell_load), strict=True):
-        assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()
+    load_fields = [compute_fields(cell_loads) for cell_loads in (tilted_load, random_load, single_cell_load)]
+    for *terms, sum_field in zip(
+        *load_fields, compute_fields(tilted_load + random_load + single_cell_load), strict=True
+    ):
+        assert np.abs(sum(terms) - sum_field).max() < 1e-10 * np.abs(sum_field).max()

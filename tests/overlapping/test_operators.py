@@ -1,4 +1,4 @@
-"""Operators of the overlapping: transposes, dense matrices, and the iteration against the direct solution."""
+"""Operators of the overlapping bodies: transposes, sums of loads, and the iteration against the direct solution."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-UNIFORM = Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6)
+UNIFORM_GRID = Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6)
 COLUMNS = Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6)
 DEPTHS = np.array([0.1, 0.5])
 
 
-def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = False) -> OverlappingOperators:
+def make_operators(grid: Grid, length: float, load: Load, *, mirrored_once: bool = False) -> OverlappingOperators:
     resolution = Resolution().for_loads((load,))
     problem = EndProblem(
         length=length,
@@ -29,8 +29,8 @@ def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = 
         resolution=resolution,
         mirrored_once=mirrored_once,
     )
-    reference = 10 * length if np.isfinite(length) else None
-    return OverlappingOperators.of(problem, Points(grid.x, grid.y, DEPTHS), reference=reference)
+    reference_depth = 10 * length if np.isfinite(length) else None
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, DEPTHS), reference=reference_depth)
 
 
 def check_transpose(operator: LinearOperator) -> None:
@@ -39,21 +39,22 @@ def check_transpose(operator: LinearOperator) -> None:
         generator.standard_normal(operator.shape[1]),
         generator.standard_normal(operator.shape[0]),
     )
-    forward, backward = operator @ column_vector, operator.T @ row_vector
+    product, transposed_product = operator @ column_vector, operator.T @ row_vector
     scale = max(
-        np.linalg.norm(forward) * np.linalg.norm(row_vector), np.linalg.norm(backward) * np.linalg.norm(column_vector)
+        np.linalg.norm(product) * np.linalg.norm(row_vector),
+        np.linalg.norm(transposed_product) * np.linalg.norm(column_vector),
     )
-    assert row_vector @ forward == pytest.approx(column_vector @ backward, abs=1e-12 * scale)
+    assert row_vector @ product == pytest.approx(column_vector @ transposed_product, abs=1e-12 * scale)
 
 
 @pytest.mark.parametrize(
     ("grid", "length", "mirrored_once"),
-    [(COLUMNS, 2.0, False), (UNIFORM, 2.0, True), (UNIFORM, np.inf, False)],
+    [(COLUMNS, 2.0, False), (UNIFORM_GRID, 2.0, True), (UNIFORM_GRID, np.inf, False)],
     ids=["slab", "single", "quarter"],
 )
 @pytest.mark.parametrize("load", list(Load))
 def test_operators_match_their_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
-    operators = overlapping(grid, length, load, mirrored_once=mirrored_once)
+    operators = make_operators(grid, length, load, mirrored_once=mirrored_once)
     equivalent = operators.equivalent(load)
     for operator in (
         operators.modes(load),
@@ -69,37 +70,37 @@ def test_operators_match_their_transposes(grid: Grid, length: float, load: Load,
 
 
 def test_problem_of_several_loads_sums_single_loads() -> None:
-    added, faces = overlapping(COLUMNS, 2.0, Load.NORMAL).equivalent(Load.NORMAL)
+    top_load, faces = make_operators(COLUMNS, 2.0, Load.NORMAL).equivalent(Load.NORMAL)
     loads = np.random.default_rng(1).random((COLUMNS.cells_x * COLUMNS.cells_y, 3))
-    for operator in (added, *faces):
+    for operator in (top_load, *faces):
         assert (operator @ loads).sum(axis=1) == pytest.approx(operator @ loads.sum(axis=1), abs=1e-12)
 
 
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
 def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None:
-    """Rounds between H and V converge to the solution of the equation set in a quarter space."""
-    operators = overlapping(UNIFORM, np.inf, load)
-    cell_loads = np.random.default_rng(2).random(UNIFORM.cells_x * UNIFORM.cells_y)
+    """The alternation between H and V converges to the solution of the equation set in a quarter space."""
+    operators = make_operators(UNIFORM_GRID, np.inf, load)
+    cell_loads = np.random.default_rng(2).random(UNIFORM_GRID.cells_x * UNIFORM_GRID.cells_y)
     source = operators.to_faces(load) @ (operators.modes(load) @ cell_loads)
     faces, to_faces = source, operators.to_faces(Load.NORMAL)
     for _ in range(40):
         faces = source + to_faces @ (operators.to_top @ faces)
-    direct_load = operators.equivalent(load).top_load @ cell_loads
-    assert operators.top_values @ faces == pytest.approx(direct_load, abs=1e-10)
-    assert np.abs(direct_load).max() > 0.1
+    direct_solution = operators.equivalent(load).top_load @ cell_loads
+    assert operators.top_values @ faces == pytest.approx(direct_solution, abs=1e-10)
+    assert np.abs(direct_solution).max() > 0.1
 
 
 def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
-    operators = overlapping(UNIFORM, 2.0, Load.NORMAL)
-    cell_loads = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
+    operators = make_operators(UNIFORM_GRID, 2.0, Load.NORMAL)
+    cell_loads = (np.linspace(1.5, 0.5, UNIFORM_GRID.cells_x)[:, None] * np.ones(UNIFORM_GRID.cells_y)).ravel()
     to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
     source = to_faces @ (operators.modes(Load.NORMAL) @ cell_loads)
-    direct_load = operators.equivalent(Load.NORMAL).top_load @ cell_loads
+    direct_solution = operators.equivalent(Load.NORMAL).top_load @ cell_loads
     faces = source
     for _ in range(50):
         faces = source + to_faces @ (to_top @ faces)
-    assert np.abs(operators.top_values @ faces - direct_load).max() > 1e-2
+    assert np.abs(operators.top_values @ faces - direct_solution).max() > 1e-2
     system = LinearOperator((source.size, source.size), lambda stress: stress - to_faces @ (to_top @ stress))
-    faces, failed = gmres(system, source, rtol=1e-13, restart=100)
-    assert not failed
-    assert operators.top_values @ faces == pytest.approx(direct_load, abs=1e-10)
+    faces, exit_code = gmres(system, source, rtol=1e-13, restart=100)
+    assert not exit_code
+    assert operators.top_values @ faces == pytest.approx(direct_solution, abs=1e-10)

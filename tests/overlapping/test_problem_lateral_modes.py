@@ -1,4 +1,4 @@
-"""Wavenumbers along the rolling direction: panels, poles, and loads as few columns."""
+"""Modes along y: panels of wavenumbers, poles, and loads as low-rank products."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
-    total = np.zeros((2, 2, len(parity_loads), GRID.cells_x, y.size))
+    displacement = np.zeros((2, 2, len(parity_loads), GRID.cells_x, y.size))
     columns = lateral_columns(panel, parity_loads, GRID)
     assert columns is not None
     for index, parity in enumerate(parity_loads):
@@ -39,16 +39,16 @@ def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y
         amplitude_columns = amplitudes.reshape(GRID.cells_x, -1)
         for load_index, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
             for symmetry_index, synthesis in enumerate(columns.synthesis(load, parity, panel.waves(y))):
-                total[load_index, symmetry_index, index] += amplitude_columns @ synthesis
-    return total
+                displacement[load_index, symmetry_index, index] += amplitude_columns @ synthesis
+    return displacement
 
 
-@given(seed=st.integers(0, 10**6), rank=st.sampled_from([1, 2, 40]), split=st.booleans())
-def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split: bool):
+@given(seed=st.integers(0, 10**6), rank=st.sampled_from([1, 2, 40]), is_split=st.booleans())
+def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, is_split: bool):
     rng = np.random.default_rng(seed)
     pressure = rng.random((GRID.cells_x, rank)) @ rng.random((rank, GRID.cells_y))
-    mirrored = pressure[::-1]
-    parity_loads = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
+    mirrored_pressure = pressure[::-1]
+    parity_loads = {1: pressure + mirrored_pressure, -1: pressure - mirrored_pressure} if is_split else {0: pressure}
     # The interpolation with 20 nodes is exact to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         fine_panel = replace(panel, nodes=panel.fine_nodes, interpolation=None)
@@ -80,40 +80,43 @@ def test_no_load_has_no_columns():
 
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])
 @pytest.mark.parametrize("moments", [cosine_moments, sine_moments])
-def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
-    """The difference of the moments between two ends of the range is the integral."""
-    reference, positions = 10.0, np.array([y])
-    wave = np.cos if moments is cosine_moments else np.sin
-    short_moments, long_moments = (
-        moments(0.7, positions, reference, 3)[:, 0],
-        moments(2.5, positions, reference, 3)[:, 0],
+def test_moments_of_poles_equal_integral(moments: Callable[..., FloatArray], y: float):
+    """The difference between the moments from two wavenumbers equals the integral between them."""
+    reference_depth, positions = 10.0, np.array([y])
+    wave_function = np.cos if moments is cosine_moments else np.sin
+    moments_from_low, moments_from_high = (
+        moments(0.7, positions, reference_depth, 3)[:, 0],
+        moments(2.5, positions, reference_depth, 3)[:, 0],
     )
-    expected = [integrate.quad(lambda k, n=n: wave(k * y) * k**n, 0.7, 2.5)[0] for n in range(-3, 3)]
-    np.testing.assert_allclose(long_moments - short_moments, expected, atol=1e-12)
+    expected = [integrate.quad(lambda k, n=n: wave_function(k * y) * k**n, 0.7, 2.5)[0] for n in range(-3, 3)]
+    np.testing.assert_allclose(moments_from_high - moments_from_low, expected, atol=1e-12)
 
 
 def test_pole_integrals_vanish_at_reference():
-    """The integrals of the cosines' poles over all wavenumbers vanish at the reference, the first without curvature."""
-    step, reference = 1e-3, 10.0
-    y = reference + step * np.arange(-1.0, 2.0)
-    total = cosine_moments(400.0, y, reference, 0)
-    np.testing.assert_allclose(total[:, 1], 0.0, atol=5e-4)
-    assert abs(total[0] @ [1, -2, 1]) / step**2 < 1e-2
-    sine_integrals = sine_moments(400.0, y, reference, 0)
+    """The integrals of the cosine poles over all wavenumbers vanish at the reference; the first has no curvature
+    there."""
+    step, reference_depth = 1e-3, 10.0
+    y = reference_depth + step * np.arange(-1.0, 2.0)
+    displacement = cosine_moments(400.0, y, reference_depth, 0)
+    np.testing.assert_allclose(displacement[:, 1], 0.0, atol=5e-4)
+    assert abs(displacement[0] @ [1, -2, 1]) / step**2 < 1e-2
+    sine_integrals = sine_moments(400.0, y, reference_depth, 0)
     # The sine's poles are the derivatives of the cosine's poles of the next order, with reversed sign.
-    np.testing.assert_allclose(sine_integrals[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
+    np.testing.assert_allclose(sine_integrals[1, 1], -(displacement[0, 2] - displacement[0, 0]) / (2 * step), rtol=1e-4)
 
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
 def test_sine_moments_integrate_cosine_moments(y: float):
-    """The derivative of ``sin(k y) / k**3`` along y is ``cos(k y) / k**2``, rigid motions included, and so on."""
-    step, reference = 1e-4, 3.0
+    """The derivative of ``sin(k y) / k**n`` along y is ``cos(k y) / k**(n - 1)``, rigid motions included."""
+    step, reference_depth = 1e-4, 3.0
     moments_ahead, moments_behind = (
-        sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1)
+        sine_moments(0.7, np.array([y + sign * step]), reference_depth)[:, 0] for sign in (1, -1)
     )
-    cosine = cosine_moments(0.7, np.array([y]), reference)[:, 0]
+    cosine_values = cosine_moments(0.7, np.array([y]), reference_depth)[:, 0]
     np.testing.assert_allclose(
-        (moments_ahead - moments_behind)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6
+        (moments_ahead - moments_behind)[:3] / (2 * step),
+        [cosine_values[1], cosine_values[2], cosine_values[3]],
+        atol=1e-6,
     )
 
 
@@ -121,13 +124,13 @@ def test_sine_moments_integrate_cosine_moments(y: float):
 def test_pole_integral_does_not_depend_on_first_panel(poles: int):
     y, totals = np.array([0.0, 0.4, 2.0]), []
     for panel_end in (0.02, 0.1, 0.6):
-        total = np.zeros((2, y.size))
+        displacement = np.zeros((2, y.size))
         for panel in lateral_panels(panel_end, 3.0, 60.0, Resolution(), 30.0, poles):
             response = np.exp(-panel.nodes) / panel.nodes**poles
             if panel.interpolation is not None:
                 response = panel.interpolation @ response
-            total += [response @ waves for waves in panel.waves(y)]
-        totals.append(total[0] - total[0, :1] if poles == BENDING_POLES else total[0])
+            displacement += [response @ waves for waves in panel.waves(y)]
+        totals.append(displacement[0] - displacement[0, :1] if poles == BENDING_POLES else displacement[0])
     np.testing.assert_allclose(totals[0], totals[1], atol=2e-4 if poles == POLES else 1e-5)
     if poles == BENDING_POLES:
         np.testing.assert_allclose(totals[2], totals[1], atol=1e-5)

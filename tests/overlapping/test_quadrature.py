@@ -1,4 +1,4 @@
-"""Settings of the quadratures without resolution are rejected."""
+"""Settings and nodes of the quadratures."""
 
 from __future__ import annotations
 

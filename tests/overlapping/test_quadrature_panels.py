@@ -1,4 +1,4 @@
-"""Graded positions along x and the interpolation from them."""
+"""Graded positions along x and the interpolation between them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import pytest
 from contactstudy.overlapping.quadrature import cell_moments, graded_interpolation, graded_positions
 
 
-@pytest.mark.parametrize("finite", [True, False])
-def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
-    """In the middle, rounding determines whether a position lies in the last panel or behind it."""
+@pytest.mark.parametrize("is_finite", [True, False])
+def test_interpolation_is_exact_for_polynomials(is_finite: bool) -> None:
+    """Rounding determines whether the position at mid-length lies in the last panel or beyond it."""
     rng = np.random.default_rng(0)
     for length in rng.uniform(1e-3, 1e3, 20):
         x = np.sort(np.concatenate([length * rng.random(200), [0.0, 0.5 * length, length]]))
-        computed = graded_interpolation(x, length if finite else np.inf)
+        computed = graded_interpolation(x, length if is_finite else np.inf)
         assert computed is not None
         positions, matrix = computed
         for power in (0, 1, 5):
@@ -31,7 +31,7 @@ def test_few_positions_are_not_interpolated() -> None:
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
 def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
-    """The moments are exact up to the degree of a panel; parts of cells outside the panels contribute nothing."""
+    """The moments are exact up to the degree of a panel; cells outside the panels do not contribute."""
     rng = np.random.default_rng(0)
     edges, positions = graded_positions(4.0 * unit, 0.1 * unit)
     assert edges[0] == 0.0
@@ -56,10 +56,10 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     positions, matrix = computed
     assert positions.size < x.size
 
-    def near_ends(at: np.ndarray) -> np.ndarray:
-        return np.asarray(1 / (at + 0.02) + (1 / (3.02 - at) if np.isfinite(length) else 0.0))
+    def evaluate_steep_function(positions_at: np.ndarray) -> np.ndarray:
+        return np.asarray(1 / (positions_at + 0.02) + (1 / (3.02 - positions_at) if np.isfinite(length) else 0.0))
 
-    assert matrix @ near_ends(positions / unit) == pytest.approx(near_ends(x), rel=1e-4)
+    assert matrix @ evaluate_steep_function(positions / unit) == pytest.approx(evaluate_steep_function(x), rel=1e-4)
     assert np.isin(unit * x[[0]], positions).all()
     if np.isfinite(length):
         assert np.isin(unit * x[[-1]], positions).all()
@@ -67,5 +67,5 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     # The interpolation never has more positions than the original.
     for count in range(2, 160):
         nodes = np.linspace(0.0, 3.0, count)
-        variant = graded_interpolation(unit * nodes, unit * length)
-        assert variant is None or variant[0].size < count
+        scaled_interpolation = graded_interpolation(unit * nodes, unit * length)
+        assert scaled_interpolation is None or scaled_interpolation[0].size < count

@@ -29,7 +29,7 @@ def steel_between_ends() -> FiniteLengthSpace:
 def line_contact() -> Callable[..., xr.Dataset]:
     """Make Hertz' line contact of half-width and peak pressure 1; weaker towards the ends of a given length."""
 
-    def build(friction: float = 0.0, length: float | None = None, positions: int = 9) -> xr.Dataset:
+    def make_contact(friction: float = 0.0, length: float | None = None, positions: int = 9) -> xr.Dataset:
         y = np.linspace(-4, 4, 97)
         z = np.linspace(0.05, 1.95, 20)
         stresses = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
@@ -38,4 +38,4 @@ def line_contact() -> Callable[..., xr.Dataset]:
         fields = {name: (("x", "y", "z"), distribution[:, None, None] * values) for name, values in stresses.items()}
         return xr.Dataset(fields, {"x": x, "y": y, "z": z})
 
-    return build
+    return make_contact

@@ -10,41 +10,45 @@ from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Materi
 from contactstudy.plasticity import eigenstrain_stress
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
-SOFT = Material(2.0, 0.3)
+TEST_MATERIAL = Material(2.0, 0.3)
 
 
 @pytest.fixture(scope="module")
-def square() -> xr.Dataset:
-    """A square of eigenstrain, in cells of which the outer ones have none."""
+def square_eigenstrain() -> xr.Dataset:
+    """A square of eigenstrain, surrounded by cells without eigenstrain."""
     x, z = -0.45 + 0.1 * np.arange(10), 0.35 + 0.1 * np.arange(10)
-    inside = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
+    is_inside = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
     strains = {"xx": 1.0, "zz": -0.4, "xz": 0.3}
-    fields = {f"plastic_strain_{pair}": (("x", "z"), value * inside) for pair, value in strains.items()}
+    fields = {f"plastic_strain_{component}": (("x", "z"), value * is_inside) for component, value in strains.items()}
     return xr.Dataset(fields, {"x": x, "z": z})
 
 
-def test_square_in_half_space(square) -> None:
+def test_stress_of_square_in_half_space_equals_closed_form(square_eigenstrain) -> None:
     x, z = np.array([-0.9, -0.1, 0.05]), np.array([0.2, 0.7, 0.85, 1.6])
-    result = eigenstrain_stress(HalfSpace(material=SOFT), square, x, z, z_edges=np.linspace(0.3, 1.3, 11))
+    result = eigenstrain_stress(
+        HalfSpace(material=TEST_MATERIAL), square_eigenstrain, x, z, z_edges=np.linspace(0.3, 1.3, 11)
+    )
     ranges = (-0.3, 0.3), (0.5, 1.1)
-    expected = rectangle_in_half_plane(x[:, None], z, *ranges, (1.0, 0.0, -0.4, 0.3), SOFT.young, SOFT.poisson)
+    expected = rectangle_in_half_plane(
+        x[:, None], z, *ranges, (1.0, 0.0, -0.4, 0.3), TEST_MATERIAL.young, TEST_MATERIAL.poisson
+    )
     names = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz")
     computed = np.stack([result[name].values for name in names])
     assert np.abs(computed - expected).max() < 1e-4 * np.abs(expected).max()
     assert result["sigma_xx"].attrs["units"] == "Pa"
 
 
-def test_cells_at_an_end() -> None:
-    body = FiniteLengthSpace(length=2.0, material=SOFT)
+def test_cells_reach_the_ends_by_default() -> None:
+    body = FiniteLengthSpace(length=2.0, material=TEST_MATERIAL)
     x, z = 0.1 + 0.2 * np.arange(10), 0.1 + 0.2 * np.arange(6)
     strain = xr.Dataset({"plastic_strain_xx": (("x", "z"), np.outer(x, z))}, {"x": x, "z": z})
     edges = {"x_edges": np.linspace(0, 2, 11), "z_edges": np.linspace(0, 1.2, 7)}
-    with_edges, without_edges = (
+    result_with_edges, result_without_edges = (
         eigenstrain_stress(body, strain, x=[0.0, 1.05], z=[0.0, 0.65], **options) for options in (edges, {})
     )
-    assert np.allclose(with_edges["sigma_yy"], without_edges["sigma_yy"])
-    assert np.abs(without_edges["sigma_xx"].sel(x=0.0)).max() < 1e-9
-    assert np.abs(without_edges["sigma_zz"].sel(z=0.0)).max() < 1e-9
+    assert np.allclose(result_with_edges["sigma_yy"], result_without_edges["sigma_yy"])
+    assert np.abs(result_without_edges["sigma_xx"].sel(x=0.0)).max() < 1e-9
+    assert np.abs(result_without_edges["sigma_zz"].sel(z=0.0)).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -59,7 +63,9 @@ def test_cells_at_an_end() -> None:
         (lambda data: {"z": [-1.0]}, "outside"),
     ],
 )
-def test_bad_input(square, change, message) -> None:
-    arguments = {"body": HalfSpace(material=SOFT), "eigenstrain": square} | change(square)
+def test_invalid_argument_raises(square_eigenstrain, change, message) -> None:
+    arguments = {"body": HalfSpace(material=TEST_MATERIAL), "eigenstrain": square_eigenstrain} | change(
+        square_eigenstrain
+    )
     with pytest.raises(InvalidInputError, match=message):
         eigenstrain_stress(**arguments)

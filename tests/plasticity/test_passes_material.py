@@ -1,4 +1,4 @@
-"""Elastic-plastic materials: yield stress over depth, hardness, bad input."""
+"""Elastic-plastic materials: yield stress over depth, hardness, invalid input."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ from contactstudy import InvalidInputError
 from contactstudy.plasticity import ElasticPlastic
 
 
-def test_yield_stress_between_and_beyond_the_depths() -> None:
-    case = xr.DataArray([4.0, 2.0], {"z": [1.0, 2.0]}, "z")
-    assert ElasticPlastic(yield_stress=case).yield_stress_at(np.array([0.0, 1.5, 9.0])).tolist() == [4.0, 3.0, 2.0]
-    assert ElasticPlastic(yield_stress=case).shear_yield_stress == pytest.approx(2 / np.sqrt(3))
+def test_yield_stress_is_interpolated_and_constant_beyond_depths() -> None:
+    yield_stress = xr.DataArray([4.0, 2.0], {"z": [1.0, 2.0]}, "z")
+    assert ElasticPlastic(yield_stress=yield_stress).yield_stress_at(np.array([0.0, 1.5, 9.0])).tolist() == [
+        4.0,
+        3.0,
+        2.0,
+    ]
+    assert ElasticPlastic(yield_stress=yield_stress).shear_yield_stress == pytest.approx(2 / np.sqrt(3))
 
 
 def test_hardness_is_three_times_the_yield_stress() -> None:
@@ -35,6 +39,6 @@ def test_hardness_is_three_times_the_yield_stress() -> None:
         ({"isotropic_hardening": float("inf")}, "isotropic_hardening"),
     ],
 )
-def test_bad_input(change, message) -> None:
+def test_invalid_argument_raises(change, message) -> None:
     with pytest.raises(InvalidInputError, match=message):
         ElasticPlastic(**({"yield_stress": 1.0} | change))

@@ -1,4 +1,4 @@
-"""One pass: the rate equations of a single layer."""
+"""One pass over a single layer, against the rate equations."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ def solve_passes(
 
 
 def integrate_rates(
-    history: np.ndarray, radius: float, hardening: tuple[float, float], passes: int, substeps: int
+    history: np.ndarray, yield_radius: float, hardening: tuple[float, float], passes: int, substeps: int
 ) -> np.ndarray:
     """Residual stresses xx and yy of one layer, by the rate equations of Prandtl and Reuss in many small steps."""
     modulus = YOUNG / (1 - POISSON**2)
     isotropic, kinematic = hardening
-    strain, accumulated = np.zeros(6), 0.0
+    strain, accumulated_strain = np.zeros(6), 0.0
 
-    def residual_of(plastic: np.ndarray) -> np.ndarray:
+    def compute_residual_stress(plastic: np.ndarray) -> np.ndarray:
         xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
         return -np.array([xx, yy, 0, YOUNG / (1 + POISSON) * plastic[3], 0, 0])
 
@@ -66,16 +66,22 @@ def integrate_rates(
     for _ in range(passes):
         for stress_before, stress_after in pairwise(history):
             for substep in range(substeps):
-                stress = stress_before + (substep + 1) / substeps * (stress_after - stress_before) + residual_of(strain)
+                stress = (
+                    stress_before
+                    + (substep + 1) / substeps * (stress_after - stress_before)
+                    + compute_residual_stress(strain)
+                )
                 deviator = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
-                size = np.sqrt((component_counts * deviator**2).sum())
-                if size > radius + np.sqrt(2 / 3) * isotropic * accumulated:
+                norm = np.sqrt((component_counts * deviator**2).sum())
+                if norm > yield_radius + np.sqrt(2 / 3) * isotropic * accumulated_strain:
                     # The stress returns along the normal; the body responds to the flow by `residual_of`.
-                    normal = deviator / size
-                    slope = -(component_counts * normal * residual_of(normal)).sum() + 2 / 3 * (kinematic + isotropic)
-                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / slope
-                    strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
-    return residual_of(strain)[:2]
+                    normal = deviator / norm
+                    slope = -(component_counts * normal * compute_residual_stress(normal)).sum() + 2 / 3 * (
+                        kinematic + isotropic
+                    )
+                    step = (norm - yield_radius - np.sqrt(2 / 3) * isotropic * accumulated_strain) / slope
+                    strain, accumulated_strain = strain + step * normal, accumulated_strain + np.sqrt(2 / 3) * step
+    return compute_residual_stress(strain)[:2]
 
 
 @pytest.mark.parametrize(
@@ -93,11 +99,13 @@ def test_layer_agrees_with_rate_equations(
     yield_stresses = fatigue.shakedown(contact)["shakedown_stress"].isel(x=0)
     depth_index = int(yield_stresses.values.argmax())
     yield_stress = yield_ratio * float(yield_stresses[depth_index])
-    coarse = np.stack([contact[name].isel(x=0, z=depth_index).values[::-1] for name in STRESSES], axis=1)
-    positions = np.linspace(0, len(coarse) - 1, 12 * (len(coarse) - 1) + 1)
-    fine = np.stack([np.interp(positions, np.arange(len(coarse)), values) for values in coarse.T], axis=1)
-    state = solve_passes(fine, yield_stress, hardening, 3)
+    coarse_history = np.stack([contact[name].isel(x=0, z=depth_index).values[::-1] for name in STRESSES], axis=1)
+    positions = np.linspace(0, len(coarse_history) - 1, 12 * (len(coarse_history) - 1) + 1)
+    fine_history = np.stack(
+        [np.interp(positions, np.arange(len(coarse_history)), values) for values in coarse_history.T], axis=1
+    )
+    state = solve_passes(fine_history, yield_stress, hardening, 3)
     assert state.converged
-    expected = integrate_rates(coarse, np.sqrt(2) * yield_stress, hardening, 3, 40)
+    expected = integrate_rates(coarse_history, np.sqrt(2) * yield_stress, hardening, 3, 40)
     assert np.abs(expected).max() > 0.01
     assert layer_stresses(MATERIAL, state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())

@@ -1,4 +1,4 @@
-"""Cases to draw, and figures closed after each test."""
+"""Fixtures for figures; figures are closed after each test."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def study_case(study_dataset: xr.Dataset) -> xr.Dataset:
 
 
 @pytest.fixture(autouse=True)
-def _closed_figures() -> Iterator[None]:
+def _close_figures() -> Iterator[None]:
     from matplotlib import pyplot
 
     yield
@@ -28,9 +28,9 @@ def _closed_figures() -> Iterator[None]:
 
 @pytest.fixture
 def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
-    """Check that all artists lie within the figure, and that every axis has a label."""
+    """Check that all artists lie within the figure."""
 
-    def check(figure: matplotlib.figure.Figure) -> None:
+    def check_artists(figure: matplotlib.figure.Figure) -> None:
         figure.canvas.draw()
         frame = figure.bbox
         for ax in figure.get_axes():
@@ -42,7 +42,7 @@ def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
             assert box.x1 <= frame.x1 + 1
             assert box.y1 <= frame.y1 + 1
 
-    return check
+    return check_artists
 
 
 @pytest.fixture
@@ -52,11 +52,11 @@ def lines_of() -> Callable[[matplotlib.axes.Axes], list[matplotlib.lines.Line2D]
 
 
 @pytest.fixture
-def inks() -> Callable[[matplotlib.figure.Figure], np.ndarray]:
+def draw_pixels() -> Callable[[matplotlib.figure.Figure], np.ndarray]:
     """Draw a figure and return its pixels (row, column, rgb)."""
 
-    def draw(figure: matplotlib.figure.Figure) -> np.ndarray:
+    def draw_figure(figure: matplotlib.figure.Figure) -> np.ndarray:
         figure.canvas.draw()
         return np.asarray(figure.canvas.buffer_rgba())[..., :3]
 
-    return draw
+    return draw_figure

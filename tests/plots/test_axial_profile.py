@@ -1,4 +1,4 @@
-"""Figures of profiles contain the profile and its labels."""
+"""Figures of profiles."""
 
 from __future__ import annotations
 
@@ -11,13 +11,7 @@ from contactstudy.plots import plot_profile, plot_profiles
 from contactstudy.profiles import Cylinder, FullCrown, Lundberg
 
 
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    pyplot.close("all")
-
-
-def test_line_is_the_drop_downwards():
+def test_profile_figure_has_drop_downwards():
     ax = plot_profile(FullCrown(1.25), 10e-3, color="black")
     x, drop = ax.lines[0].get_data()
     assert (x[0], x[-1]) == (-5.0, 5.0)
@@ -27,7 +21,7 @@ def test_line_is_the_drop_downwards():
     assert "µm" in ax.get_ylabel()
 
 
-def test_given_axes_are_used_and_stay_upside_down():
+def test_profile_figure_keeps_inverted_given_axes():
     ax = pyplot.figure().add_subplot()
     for _ in range(2):
         assert plot_profile(Cylinder(), 10e-3, ax=ax) is ax
@@ -40,7 +34,7 @@ def test_profile_plot_omits_infinite_ends():
     assert ax.get_ylim()[0] == pytest.approx(5.0)
 
 
-def test_comparison_has_a_legend_and_no_clipped_text():
+def test_profile_comparison_has_distinct_colours_and_fits():
     ax = plot_profiles({"sharp": Cylinder(), "crowned": FullCrown(1.0)}, 10e-3)
     ax.figure.canvas.draw()
     frame, box = ax.figure.bbox, ax.get_tightbbox()
@@ -63,6 +57,6 @@ def test_comparison_has_a_legend_and_no_clipped_text():
         (lambda: plot_profiles([Cylinder()], 1.0), "a mapping"),
     ],
 )
-def test_bad_values_are_named(draw, message):
+def test_invalid_argument_raises(draw, message):
     with pytest.raises(InvalidInputError, match=message):
         draw()

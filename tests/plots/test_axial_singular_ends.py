@@ -1,4 +1,4 @@
-"""Singular ends have no largest pressure, and no figure contains one."""
+"""Singular ends in figures: marks instead of unbounded values."""
 
 import numpy as np
 import pytest
@@ -9,38 +9,38 @@ from contactstudy.plots.style import singular_ends
 
 
 @pytest.fixture(scope="module")
-def sharp():
+def sharp_result():
     body = HalfSpace(material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
     return solve(case, stresses=False, accuracy=0.05)
 
 
-def test_singular_ends_lie_at_roller_ends(sharp):
-    np.testing.assert_allclose(singular_ends(sharp), [0.2e-3, 1.2e-3], rtol=1e-9)
+def test_singular_ends_lie_at_roller_ends(sharp_result):
+    np.testing.assert_allclose(singular_ends(sharp_result), [0.2e-3, 1.2e-3], rtol=1e-9)
 
 
-def test_singular_end_is_marked(sharp):
-    ax = plots.plot_axial_pressure(sharp)
+def test_singular_end_is_marked(sharp_result):
+    ax = plots.plot_axial_pressure(sharp_result)
     line, marks = ax.lines
-    a, p0 = float(sharp["hertz_half_width"]), float(sharp["hertz_max_pressure"])
-    np.testing.assert_allclose(marks.get_xdata(), np.array([0.2e-3, 1.2e-3]) / a)
+    half_width, p0 = float(sharp_result["hertz_half_width"]), float(sharp_result["hertz_max_pressure"])
+    np.testing.assert_allclose(marks.get_xdata(), np.array([0.2e-3, 1.2e-3]) / half_width)
     # The narrowest columns carry much higher pressures than the figure.
-    assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp["pressure"].max()) / p0
+    assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp_result["pressure"].max()) / p0
 
 
-def test_mark_beyond_axes_keeps_limits(sharp):
-    ax = plots.plot_axial_pressure(sharp)
+def test_mark_beyond_axes_keeps_limits(sharp_result):
+    ax = plots.plot_axial_pressure(sharp_result)
     marks = ax.lines[-1]
-    first, last = marks.get_xdata()
-    ax.set_xlim(0.5 * (first + last), 1.1 * last)
+    first_end, last_end = marks.get_xdata()
+    ax.set_xlim(0.5 * (first_end + last_end), 1.1 * last_end)
     ax.figure.canvas.draw()
-    assert ax.get_tightbbox().x0 > ax.transData.transform((first, 0.0))[0]
+    assert ax.get_tightbbox().x0 > ax.transData.transform((first_end, 0.0))[0]
     assert marks.get_clip_on()
 
 
-def test_map_colours_exclude_singular_end(sharp):
-    mesh, *_ = plots.plot_pressure_map(sharp).collections
-    assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
+def test_map_colours_exclude_singular_end(sharp_result):
+    mesh, *_ = plots.plot_pressure_map(sharp_result).collections
+    assert mesh.get_clim()[1] < 0.5 * float(sharp_result["pressure"].max() / sharp_result["hertz_max_pressure"])
 
 
 def create_study(values):
@@ -50,8 +50,8 @@ def create_study(values):
 
 def test_study_line_marks_singular_cases(assert_nothing_clipped):
     figure = plots.plot_study_lines(create_study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
-    first, marks, _ = figure.axes[0].lines
-    assert np.isnan(first.get_ydata()[1])
+    first_line, marks, _ = figure.axes[0].lines
+    assert np.isnan(first_line.get_ydata()[1])
     assert list(marks.get_xdata()) == [1.0]
     assert figure.axes[0].get_ylim()[1] == pytest.approx(1.08 * 1.2)
     assert any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
@@ -83,9 +83,9 @@ def test_stress_colours_exclude_singular_end():
     """Positions close to the end have unbounded stresses, which would occupy all colours."""
     body = HalfSpace(material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
-    a = case.hertz_half_width
-    x = np.sort(np.concatenate([0.2e-3 + a * np.geomspace(1e-4, 1.0, 12), [0.1e-3, 0.7e-3]]))
-    result = solve(case, accuracy=0.05, x=x, y=[-1e-6, 0.0, 1e-6], z=a * np.array([0.0, 0.2, 0.8]))
+    half_width = case.hertz_half_width
+    x = np.sort(np.concatenate([0.2e-3 + half_width * np.geomspace(1e-4, 1.0, 12), [0.1e-3, 0.7e-3]]))
+    result = solve(case, accuracy=0.05, x=x, y=[-1e-6, 0.0, 1e-6], z=half_width * np.array([0.0, 0.2, 0.8]))
     ax = plots.plot_stress_plane(result)
     (contours,) = [
         collection

@@ -28,7 +28,7 @@ def test_levels_cover_the_stress_of_the_plane(case_result):
 
 @pytest.mark.parametrize(("y", "off_plane"), [(0.0, ""), (0.4, " at $y/a$ = 0.4")])
 @pytest.mark.parametrize("x", [1e-4, 4e-4])
-def test_largest_stress_is_marked_with_its_place(case_result, assert_nothing_clipped, x, y, off_plane):
+def test_largest_stress_is_marked_with_its_value(case_result, assert_nothing_clipped, x, y, off_plane):
     a = float(case_result["hertz_half_width"])
     peak_position = {"peak_von_mises_x": x, "peak_von_mises_y": y * a, "peak_von_mises_z": 2e-5}
     case = case_result.assign(peak_position | {"peak_von_mises": 0.9 * 1.5e9})
@@ -39,12 +39,12 @@ def test_largest_stress_is_marked_with_its_place(case_result, assert_nothing_cli
     (label_si,) = plots.plot_stress_plane(case, si=True).texts
     assert label_si.get_text().startswith("1350")
     assert_nothing_clipped(ax.figure)
-    ends = label.get_window_extent().intervalx
-    assert (ends >= ax.bbox.x0).all()
-    assert (ends <= ax.bbox.x1).all()
+    label_span = label.get_window_extent().intervalx
+    assert (label_span >= ax.bbox.x0).all()
+    assert (label_span <= ax.bbox.x1).all()
 
 
-def test_plot_of_single_plane_result(study_case):
+def test_single_plane_result_has_plot_in_its_plane_only(study_case):
     ax = plots.plot_stress_plane(study_case, "sigma_xx")
     low, high = ax.get_ylim()
     assert low > high
@@ -67,28 +67,28 @@ def test_end_face_contours_are_continuous(case_result, assert_nothing_clipped):
     assert_nothing_clipped(ax.figure)
 
 
-def test_symmetric_case_has_equal_end_faces(case_result, inks):
-    pictures = [inks(plots.plot_end_face(case_result, end=end).figure) for end in ("first", "last")]
-    assert (np.abs(pictures[0].astype(int) - pictures[1]).max(axis=-1) > 40).mean() < 0.01
+def test_symmetric_case_has_equal_end_faces(case_result, draw_pixels):
+    images = [draw_pixels(plots.plot_end_face(case_result, end=end).figure) for end in ("first", "last")]
+    assert (np.abs(images[0].astype(int) - images[1]).max(axis=-1) > 40).mean() < 0.01
 
 
-def test_sides_differ_in_sliding(case_result, inks):
-    pictures = [inks(plots.plot_end_face(case_result, "tau_yz", side=side).figure) for side in (1, -1)]
-    assert not np.array_equal(*pictures)
+def test_end_face_of_sliding_contact_depends_on_side(case_result, draw_pixels):
+    images = [draw_pixels(plots.plot_end_face(case_result, "tau_yz", side=side).figure) for side in (1, -1)]
+    assert not np.array_equal(*images)
 
 
-def test_distance_cuts_the_plane(case_result):
+def test_end_face_is_limited_to_distance(case_result):
     ax = plots.plot_end_face(case_result, distance=1.5)
     assert ax.get_xlim()[1] <= 1.5 * (1 + 1e-9)
 
 
-def test_given_axes_are_used(case_result):
+def test_stress_figures_use_given_axes(case_result):
     for draw in (plots.plot_stress_plane, plots.plot_end_face):
         ax = pyplot.figure().add_subplot()
         assert draw(case_result, ax=ax) is ax
 
 
-def test_bad_input(case_result, study_dataset, study_case):
+def test_invalid_argument_raises(case_result, study_dataset, study_case):
     for call, message in (
         (lambda: plots.plot_stress_plane(study_dataset), "single case"),
         (lambda: plots.plot_stress_plane(study_case.drop_vars(["von_mises", "sigma_xx"])), "level"),

@@ -5,7 +5,7 @@ from contactstudy.errors import InvalidInputError
 from tests.stand_in_solver import FAILS
 
 
-def test_study_figure(study_dataset):
+def test_edge_effect_figure_has_panel_of_each_distance(study_dataset):
     figure = plots.plot_edge_effect(study_dataset)
     figure.canvas.draw()
     titles = [ax.get_title() for ax in figure.get_axes()]
@@ -15,7 +15,7 @@ def test_study_figure(study_dataset):
     assert labels[-1].startswith("half-space")
 
 
-def test_quarter_of_the_largest_stress_has_the_middle_colour(study_dataset):
+def test_middle_colour_is_quarter_of_largest_stress(study_dataset):
     figure = plots.plot_edge_effect(study_dataset)
     panels = [ax.collections[0] for ax in figure.get_axes() if ax.get_title()]
     assert [float(panel.norm(0.25 * panel.levels[-1])) for panel in panels] == pytest.approx([0.5] * 3)
@@ -27,11 +27,11 @@ def test_legend_fits_narrow_column(study_dataset):
     assert text.get_fontsize() * 360 / (72 * figure.get_figwidth()) > 7
 
 
-def test_no_text_is_clipped(study_dataset, assert_nothing_clipped):
+def test_edge_effect_figure_fits(study_dataset, assert_nothing_clipped):
     assert_nothing_clipped(plots.plot_edge_effect(study_dataset))
 
 
-def test_study_figure_without_stresses_and_without_comparison(study_dataset):
+def test_edge_effect_figure_without_stresses_has_one_panel(study_dataset):
     surfaces = study_dataset.drop_vars(
         [name for name in study_dataset.data_vars if "z" in str(study_dataset[name].dims)]
     )

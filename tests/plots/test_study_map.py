@@ -9,7 +9,7 @@ from contactstudy.plots.study_map import describe_value
 from tests.stand_in_solver import FAILS
 
 
-def test_map_of_a_study(study_dataset, assert_nothing_clipped):
+def test_map_has_values_and_hatched_failures(study_dataset, assert_nothing_clipped):
     ax = plots.plot_study_map(study_dataset, "peak_von_mises", selection={"body": "finite-length"})
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["0", "1", "2"]
     assert [tick.get_text() for tick in ax.get_yticklabels()] == ["0.1", f"{FAILS:g}"]
@@ -40,17 +40,17 @@ def test_complete_map_has_no_legend(study_dataset):
     assert plots.plot_study_map(complete_study, "peak_von_mises").get_legend() is None
 
 
-def test_unit_is_readable(study_dataset):
+def test_map_has_engineering_unit(study_dataset):
     ax = plots.plot_study_map(study_dataset, "contact_length", selection={"body": "finite-length"})
     assert any("(mm)" in axes.get_ylabel() for axes in ax.figure.get_axes())
 
 
-def test_names_of_bodies_along_an_axis(study_dataset):
+def test_map_axis_has_names_of_bodies(study_dataset):
     ax = plots.plot_study_map(study_dataset, "end_pressure_over_p0", y="body", selection={"friction": 0.1})
     assert [tick.get_text() for tick in ax.get_yticklabels()] == ["finite-length", "half-space"]
 
 
-def test_contours_of_a_computed_quantity(study_dataset):
+def test_map_of_computed_values_has_given_levels(study_dataset):
     factors = analysis.edge_factors(study_dataset.sel(body="finite-length"))["end_over_middle_first"]
     values = factors.copy(data=np.arange(6.0).reshape(3, 2))
     ax = plots.plot_study_map(study_dataset, values, levels=[1.5, 2.5], label="factor")
@@ -58,12 +58,12 @@ def test_contours_of_a_computed_quantity(study_dataset):
     assert ax.figure.get_axes()[1].get_ylabel() == "factor"
 
 
-def test_given_axes_are_used(study_dataset):
+def test_map_uses_given_axes(study_dataset):
     ax = pyplot.figure().add_subplot()
     assert plots.plot_study_map(study_dataset, "end_pressure_over_p0", ax=ax, selection={"body": "finite-length"}) is ax
 
 
-def test_bad_input(study_dataset):
+def test_invalid_argument_raises(study_dataset):
     one_body_study = study_dataset.sel(body="finite-length")
     for call, message in (
         (lambda: plots.plot_study_map(study_dataset, "end_pressure_over_p0"), "with a value of body"),
@@ -82,6 +82,6 @@ def test_bad_input(study_dataset):
             call()
 
 
-def test_values_are_described() -> None:
+def test_description_of_value_has_symbol_and_unit() -> None:
     assert describe_value("max_pressure", 1e9, "Pa", 2) == "$p_0$ = 1 GPa, one of 2 values"
     assert describe_value("profile", "crowned", "") == "profile = crowned"

@@ -12,7 +12,7 @@ def test_colours_are_ordered_in_grey():
     assert np.all(np.diff(colours @ [0.299, 0.587, 0.114]) > 0)
 
 
-def test_saved_for_screen_and_journal(tmp_path):
+def test_saved_figure_is_png_and_pdf_with_text(tmp_path):
     figure = pyplot.figure()
     figure.add_subplot().set_ylabel("von Mises stress")
     png, pdf = plots.save(figure, tmp_path / "figure_1.5GPa")
@@ -20,7 +20,7 @@ def test_saved_for_screen_and_journal(tmp_path):
     assert png.read_bytes().startswith(b"\x89PNG")
     content = pdf.read_bytes()
     assert content.startswith(b"%PDF")
-    # Text remains text: TrueType, not outlines.
+    # The PDF contains fonts, not outlines.
     assert b"TrueType" in content or b"CIDFontType2" in content
 
 
@@ -28,7 +28,7 @@ def test_suffix_is_not_doubled(tmp_path):
     assert [file.name for file in plots.save(pyplot.figure(), tmp_path / "a.png", ["png"])] == ["a.png"]
 
 
-def test_unknown_format(tmp_path):
+def test_unknown_format_raises(tmp_path):
     with pytest.raises(InvalidInputError, match="formats = 'docx'"):
         plots.save(pyplot.figure(), tmp_path / "a", ["docx"])
     assert not list(tmp_path.iterdir())

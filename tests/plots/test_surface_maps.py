@@ -23,8 +23,8 @@ from contactstudy import (
 
 
 @functools.cache
-def rolling_result() -> xr.Dataset:
-    """Equal bodies that end together, with creepages along and across."""
+def solve_rolling_case() -> xr.Dataset:
+    """Equal bodies with common ends, under longitudinal and lateral creepage."""
     steel = Material(210e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=0.5e-3, material=steel),
@@ -37,17 +37,17 @@ def rolling_result() -> xr.Dataset:
 
 
 def test_stick_and_slip_areas_match_case(assert_nothing_clipped) -> None:
-    result = rolling_result()
+    result = solve_rolling_case()
     ax = plots.plot_stick_and_slip(result)
     mesh = ax.collections[0]
-    slips = np.asarray(mesh.get_array()).reshape(result["pressure"].transpose("y", "x").shape)
+    is_slipping = np.asarray(mesh.get_array()).reshape(result["pressure"].transpose("y", "x").shape)
     in_contact = result["pressure"].transpose("y", "x").values > 0
-    assert float(slips[in_contact].sum()) == int(in_contact.sum()) - int(result["stick"].sum())
+    assert float(is_slipping[in_contact].sum()) == int(in_contact.sum()) - int(result["stick"].sum())
     assert mesh.get_clip_path() is not None  # the contact's border clips the mesh
     assert_nothing_clipped(ax.figure)
 
 
-def test_contact_border_near_singular_ends() -> None:
+def test_contact_border_is_drawn_at_half_width() -> None:
     steel = Material(210e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=1.4e-3, material=steel),
@@ -65,7 +65,7 @@ def test_contact_border_near_singular_ends() -> None:
 
 
 def test_arrows_follow_local_tractions() -> None:
-    result = rolling_result()
+    result = solve_rolling_case()
     ax = plots.plot_stick_and_slip(result, arrows=12)
     (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
     a, p0 = float(result["hertz_half_width"]), float(result["hertz_max_pressure"])
@@ -78,22 +78,22 @@ def test_arrows_follow_local_tractions() -> None:
     assert 40 < len(arrows.U) <= 72
 
 
-def test_long_contact_fills_the_axes(assert_nothing_clipped) -> None:
-    result = rolling_result()
+def test_map_of_long_contact_has_usable_height(assert_nothing_clipped) -> None:
+    result = solve_rolling_case()
     ax = plots.plot_stick_and_slip(result.assign_coords(x=40 * result["x"]))
     box = ax.get_window_extent()
     assert box.height > 0.4 * box.width
     assert_nothing_clipped(ax.figure)
 
 
-def test_si_is_mm_and_mpa() -> None:
-    ax = plots.plot_stick_and_slip(rolling_result(), si=True)
+def test_si_map_has_mm_and_mpa() -> None:
+    ax = plots.plot_stick_and_slip(solve_rolling_case(), si=True)
     assert "mm" in ax.get_xlabel()
     assert any("MPa" in artist.text.get_text() for artist in ax.artists)
 
 
 def test_traction_map_contains_magnitude_and_stick_border(assert_nothing_clipped) -> None:
-    result = rolling_result()
+    result = solve_rolling_case()
     ax = plots.plot_traction_map(result, si=True)
     mesh, stick, contact = ax.collections
     max_traction = np.hypot(result["traction_x"], result["traction_y"]).where(result["pressure"] > 0, 0.0).max()
@@ -114,14 +114,14 @@ def test_traction_map_contains_magnitude_and_stick_border(assert_nothing_clipped
         plots.plot_traction_map(result.drop_vars("stick"))
 
 
-def test_bad_traction_input() -> None:
+def test_invalid_traction_map_raises() -> None:
     with pytest.raises(InvalidInputError, match="stick is missing"):
-        plots.plot_stick_and_slip(rolling_result().drop_vars("stick"))
+        plots.plot_stick_and_slip(solve_rolling_case().drop_vars("stick"))
     with pytest.raises(InvalidInputError, match="arrows = 0"):
-        plots.plot_stick_and_slip(rolling_result(), arrows=0)
+        plots.plot_stick_and_slip(solve_rolling_case(), arrows=0)
 
 
-def test_map_shows_every_cell(case_result, assert_nothing_clipped):
+def test_pressure_map_contains_every_cell(case_result, assert_nothing_clipped):
     ax = plots.plot_pressure_map(case_result)
     mesh_values = ax.collections[0].get_array()
     assert np.asarray(mesh_values).max() == pytest.approx(float(case_result["pressure"].max()) / 1.5e9)
@@ -132,13 +132,13 @@ def test_map_shows_every_cell(case_result, assert_nothing_clipped):
 
 
 @pytest.mark.parametrize("draw", [plots.plot_pressure_map])
-def test_given_axes_are_used(study_case, draw):
+def test_pressure_map_uses_given_axes(study_case, draw):
     ax = pyplot.figure().add_subplot()
     assert draw(study_case, ax) is ax
 
 
 @pytest.mark.parametrize("draw", [plots.plot_pressure_map])
-def test_bad_input(study_dataset, study_case, draw):
+def test_invalid_result_raises(study_dataset, study_case, draw):
     with pytest.raises(InvalidInputError, match="single case"):
         draw(study_dataset)
     with pytest.raises(InvalidInputError, match="level"):

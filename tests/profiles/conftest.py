@@ -1,4 +1,4 @@
-"""A steel half-space, on which the tests solve profiles, and positions along a roller."""
+"""Shared fixtures: contacts of profiles on a steel half-space, and positions along a roller."""
 
 from __future__ import annotations
 
@@ -29,9 +29,11 @@ def positions() -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def solve_profile(steel: Material) -> Callable[..., xr.Dataset]:
-    """Press a roller of a profile on a half-space at its Hertz pressure PRESSURE."""
+    """Solve the contact of a profile on a half-space, at the Hertz pressure PRESSURE or under a load."""
 
-    def press(profile: Profile, length: float, *, load: float | None = None, cells: float = 8, **grid) -> xr.Dataset:
+    def solve_roller(
+        profile: Profile, length: float, *, load: float | None = None, cells: float = 8, **grid
+    ) -> xr.Dataset:
         roller = Roller(radius=RADIUS, length=length, profile=profile)
         case = Case(
             body=HalfSpace(material=steel), roller=roller, max_pressure=None if load else PRESSURE, load=load or None
@@ -39,14 +41,14 @@ def solve_profile(steel: Material) -> Callable[..., xr.Dataset]:
         cells_grid = choose_grid(case, cells_x=cells, cells_y=2 * cells, **grid)
         return solve(case, cells_grid, stresses=False).assign_attrs(length=length)
 
-    return press
+    return solve_roller
 
 
-def axial_results(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def list_axial_results(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Distance from mid-length over half the length, largest pressure over p0, and load per length over its mean."""
     half_length = 0.5 * result.attrs["length"]
     step = float(result["y"][1] - result["y"][0])
-    mean = float(result["normal_load"]) / result.attrs["length"]
+    mean_load = float(result["normal_load"]) / result.attrs["length"]
     pressure = result["pressure"]
     peak = pressure.max("y").values / float(result["hertz_max_pressure"])
-    return (result["x"].values - half_length) / half_length, peak, pressure.sum("y").values * step / mean
+    return (result["x"].values - half_length) / half_length, peak, pressure.sum("y").values * step / mean_load

@@ -58,13 +58,18 @@ def test_drop_is_symmetric_and_increases_outwards(profile: Profile, x: float) ->
     assert drop[2] >= drop[3] == 0.0
 
 
-@given(first=SYMMETRIC_PROFILES, second=SYMMETRIC_PROFILES, third=SYMMETRIC_PROFILES)
-def test_sum_adds_the_drops(first: Profile, second: Profile, third: Profile) -> None:
+@given(first_profile=SYMMETRIC_PROFILES, second_profile=SYMMETRIC_PROFILES, third_profile=SYMMETRIC_PROFILES)
+def test_sum_adds_the_drops(first_profile: Profile, second_profile: Profile, third_profile: Profile) -> None:
     x = LENGTH * np.linspace(-0.49, 0.49, 15)
-    total = first + second + third  # type: ignore[operator]
-    assert total == Sum((first, second, third)) == first + (second + third)  # type: ignore[operator]
+    sum_profile = first_profile + second_profile + third_profile  # type: ignore[operator]
+    assert (
+        sum_profile
+        == Sum((first_profile, second_profile, third_profile))
+        == first_profile + (second_profile + third_profile)
+    )  # type: ignore[operator]
     np.testing.assert_array_equal(
-        total.drop(x, LENGTH), first.drop(x, LENGTH) + second.drop(x, LENGTH) + third.drop(x, LENGTH)
+        sum_profile.drop(x, LENGTH),
+        first_profile.drop(x, LENGTH) + second_profile.drop(x, LENGTH) + third_profile.drop(x, LENGTH),
     )
 
 
@@ -76,8 +81,8 @@ def test_user_profile_needs_only_a_drop() -> None:
     x = np.array([-1e-3, 2e-3])
     roller = Roller(radius=RADIUS, length=LENGTH, profile=Wedge())
     np.testing.assert_array_equal(roller.clearance(x, np.array([0.0]))[:, 0], 1e-4 * np.abs(x))
-    for added in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
-        np.testing.assert_allclose(added.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
+    for combined_profile in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
+        np.testing.assert_allclose(combined_profile.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
     np.testing.assert_array_equal(local_radius(Wedge(), x, LENGTH, RADIUS), [RADIUS, RADIUS])
 
 
@@ -102,9 +107,9 @@ def test_invalid_drops_of_a_user_profile_are_rejected(drop, message: str) -> Non
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())
     if "very ends" not in message:
-        for combined in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
+        for combined_profile in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
             with pytest.raises(InvalidInputError, match="profile = "):
-                combined.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
+                combined_profile.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
 
 
 def test_nan_drop_near_the_end_is_rejected() -> None:
@@ -133,7 +138,7 @@ def test_repr_of_a_user_profile_is_its_name() -> None:
         assert " at 0x" not in text
 
 
-def test_drop_may_be_a_list() -> None:
+def test_user_profile_may_return_list() -> None:
     class UserProfile:
         def drop(self, x, length):
             return [1e-6 for _ in x]
@@ -169,27 +174,27 @@ def test_numbers_beyond_arithmetic_are_rejected(create) -> None:
 
 def test_sum_keeps_the_radius_of_a_cone(positions: np.ndarray) -> None:
     cone = Tapered(half_angle=0.05)
-    for added in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
+    for combined_profile in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
         np.testing.assert_array_equal(
-            added.local_radius(positions, LENGTH, RADIUS), cone.local_radius(positions, LENGTH, RADIUS)
+            combined_profile.local_radius(positions, LENGTH, RADIUS), cone.local_radius(positions, LENGTH, RADIUS)
         )
 
 
 @pytest.mark.parametrize("profile", [Cylinder(), Tapered(0.1), Lundberg(1e-6), Measured((0, 1, 2, 3, 4), (0,) * 5)])
 def test_equal_profiles_are_equal_and_hashable(profile: Profile) -> None:
-    copy = replace(profile)  # type: ignore[type-var]
-    assert copy == profile
-    assert hash(copy) == hash(profile)
-    assert profile + Cylinder() == copy + Cylinder()  # type: ignore[operator]
+    equal_profile = replace(profile)  # type: ignore[type-var]
+    assert equal_profile == profile
+    assert hash(equal_profile) == hash(profile)
+    assert profile + Cylinder() == equal_profile + Cylinder()  # type: ignore[operator]
 
 
 def test_halves_have_different_drops(positions: np.ndarray) -> None:
-    left, right = Cylinder(1e-3), FullCrown(2.0)
-    drop = Halves(left=left, right=right).drop(positions, LENGTH)
-    np.testing.assert_array_equal(drop[:100], left.drop(positions[:100], LENGTH))
-    np.testing.assert_array_equal(drop[100:], right.drop(positions[100:], LENGTH))
-    mirrored = Halves(left=right, right=left).drop(-positions, LENGTH)
-    np.testing.assert_array_equal(mirrored, drop)
+    left_profile, right_profile = Cylinder(1e-3), FullCrown(2.0)
+    drop = Halves(left=left_profile, right=right_profile).drop(positions, LENGTH)
+    np.testing.assert_array_equal(drop[:100], left_profile.drop(positions[:100], LENGTH))
+    np.testing.assert_array_equal(drop[100:], right_profile.drop(positions[100:], LENGTH))
+    mirrored_drop = Halves(left=right_profile, right=left_profile).drop(-positions, LENGTH)
+    np.testing.assert_array_equal(mirrored_drop, drop)
 
 
 def test_halves_keep_their_radii(positions: np.ndarray) -> None:
@@ -210,7 +215,7 @@ def test_halves_keep_their_radii(positions: np.ndarray) -> None:
         ),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 

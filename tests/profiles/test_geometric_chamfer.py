@@ -1,4 +1,4 @@
-"""Chamfers of drawings, and the corners of generatrices."""
+"""Chamfers, and the corners of generatrices."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ X = np.linspace(-LENGTH / 2, LENGTH / 2, 401)
 
 
 @pytest.mark.parametrize(
-    "sizes",
+    "dimensions",
     [
         {"width": 0.5e-3, "angle": ANGLE},
         {"depth": 0.5e-3 * np.tan(ANGLE), "angle": ANGLE},
         {"depth": 0.5e-3 * np.tan(ANGLE), "width": 0.5e-3},
     ],
 )
-def test_two_sizes_determine_the_chamfer(sizes: dict[str, float]) -> None:
-    drop = Chamfer(**sizes).drop(X, LENGTH)
+def test_two_dimensions_determine_chamfer(dimensions: dict[str, float]) -> None:
+    drop = Chamfer(**dimensions).drop(X, LENGTH)
     np.testing.assert_allclose(drop, np.maximum(np.abs(X) - 0.5e-3, 0.0) * np.tan(ANGLE), atol=1e-18)
 
 
@@ -39,7 +39,7 @@ def test_blend_arc_is_tangential_to_both_sides() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sizes", "parameter"),
+    ("dimensions", "parameter"),
     [
         ({"width": 1e-4}, "depth, width, angle"),
         ({"width": 1e-4, "depth": 1e-5, "angle": 0.1}, "depth, width, angle"),
@@ -48,9 +48,9 @@ def test_blend_arc_is_tangential_to_both_sides() -> None:
         ({"width": 1e-4, "angle": 0.5, "blend_radius": 1e-2}, "blend_radius"),
     ],
 )
-def test_sizes_out_of_range_are_rejected(sizes: dict[str, float], parameter: str) -> None:
+def test_invalid_dimensions_raise(dimensions: dict[str, float], parameter: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
-        Chamfer(**sizes).drop(X, LENGTH)
+        Chamfer(**dimensions).drop(X, LENGTH)
     assert caught.value.parameter == parameter
 
 
@@ -70,7 +70,7 @@ RIDGE = Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3))
         (Halves(FullCrown(1.0), FullCrown(0.5)), [], []),
     ],
 )
-def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
+def test_slope_jumps_of_profiles_equal_formulas(profile, positions: list[float], jumps: list[float]) -> None:
     corners = find_slope_jumps(lambda x: profile.drop(x, LENGTH), LENGTH)
     np.testing.assert_allclose(corners.positions, positions, atol=1e-12)
     np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)
@@ -86,8 +86,8 @@ def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[fl
         ([0.3e-3, 0.301e-3, 0.302e-3], [-0.001, 0.02, -0.01]),
     ],
 )
-def test_close_corners_are_told_apart(positions: list[float], jumps: list[float]) -> None:
-    """The least distance is a ten-thousandth of the length."""
+def test_close_corners_are_distinguished(positions: list[float], jumps: list[float]) -> None:
+    """The smallest distance of corners is 1e-4 of the length."""
 
     def drop(x: np.ndarray) -> np.ndarray:
         return 0.4 * x**2 + np.maximum(x[:, None] - positions, 0.0) @ jumps
@@ -98,8 +98,8 @@ def test_close_corners_are_told_apart(positions: list[float], jumps: list[float]
 
 
 @pytest.mark.parametrize("radius", [1.0, 10.0, 1000.0])
-def test_rounding_is_no_corner(radius: float) -> None:
-    """The difference of two large numbers is the usual formula of an arc."""
+def test_arc_has_no_corner_from_rounding(radius: float) -> None:
+    """The formula of the arc is a difference of two large numbers."""
     assert not find_slope_jumps(lambda x: radius - np.sqrt(radius**2 - x**2), 10e-3).positions.size
 
 

@@ -25,10 +25,12 @@ from tests.profiles.conftest import LENGTH, RADIUS
 CROWN = FullCrown(0.8)
 
 
-def test_drop_within_the_effective_length(positions: np.ndarray) -> None:
-    effective = 0.9 * LENGTH
-    inside = positions[np.abs(positions) <= 0.5 * effective]
-    assert EffectiveLength(CROWN, effective).drop(inside, LENGTH) == pytest.approx(CROWN.drop(inside, effective))
+def test_drop_within_effective_length_equals_inner_profile(positions: np.ndarray) -> None:
+    effective_length = 0.9 * LENGTH
+    inner_positions = positions[np.abs(positions) <= 0.5 * effective_length]
+    assert EffectiveLength(CROWN, effective_length).drop(inner_positions, LENGTH) == pytest.approx(
+        CROWN.drop(inner_positions, effective_length)
+    )
     assert EffectiveLength(CROWN, LENGTH).drop(positions, LENGTH) == pytest.approx(CROWN.drop(positions, LENGTH))
 
 
@@ -41,17 +43,17 @@ def test_corners_equal_a_rounded_cylinder(positions: np.ndarray) -> None:
     "profile", [CROWN, FujiwaraKawase(2e-7, 1e-6), FujiwaraKawase(5e-7, 8e-6), JohnsGohar(1e-6, 4e-5)]
 )
 def test_corners_continue_the_profile(profile: Profile) -> None:
-    """The corner starts with the profile's slope: a corner parallel to the axis would be a loaded ledge."""
-    effective = 0.9 * LENGTH
+    """The corner starts with the slope of the profile; a corner parallel to the axis would carry load."""
+    effective_length = 0.9 * LENGTH
     x = np.linspace(0.4 * LENGTH, 0.5 * LENGTH, 20001)
-    drop = EffectiveLength(profile, effective).drop(x, LENGTH)
-    assert np.array_equal(drop, EffectiveLength(profile, effective).drop(-x, LENGTH))
+    drop = EffectiveLength(profile, effective_length).drop(x, LENGTH)
+    assert np.array_equal(drop, EffectiveLength(profile, effective_length).drop(-x, LENGTH))
     slope = np.diff(drop) / np.diff(x)
     # The corner continues slopes up to 1, steeper than any contact.
     assert (np.diff(np.minimum(slope, 0.99)) > -1e-9).all()
     assert slope[-1] > 50
     radius = 0.05 * LENGTH
-    assert drop[-1] > EffectiveLength(profile, effective).end_drop + radius
+    assert drop[-1] > EffectiveLength(profile, effective_length).end_drop + radius
 
 
 def test_corner_is_a_circle_up_to_a_right_angle() -> None:
@@ -61,26 +63,29 @@ def test_corner_is_a_circle_up_to_a_right_angle() -> None:
         def drop(self, x, length):
             return 0.75 * np.abs(x)
 
-    half, corner = 0.4 * LENGTH, 0.1 * LENGTH
+    half_effective_length, corner = 0.4 * LENGTH, 0.1 * LENGTH
     angle = np.linspace(np.arcsin(0.6), 0.5 * np.pi, 7)
     radius = corner / 0.4
-    x, drop = half + radius * (np.sin(angle) - 0.6), 0.75 * half + radius * (0.8 - np.cos(angle))
-    assert EffectiveLength(Cone(), 2 * half).drop(x, LENGTH) == pytest.approx(drop, rel=1e-6)
+    x, drop = (
+        half_effective_length + radius * (np.sin(angle) - 0.6),
+        0.75 * half_effective_length + radius * (0.8 - np.cos(angle)),
+    )
+    assert EffectiveLength(Cone(), 2 * half_effective_length).drop(x, LENGTH) == pytest.approx(drop, rel=1e-6)
 
 
 def test_radius_across_equals_the_profile(positions: np.ndarray) -> None:
-    inside = positions[np.abs(positions) <= 0.4 * LENGTH]
-    drops = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inside, LENGTH, RADIUS)
-    assert drops == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
+    inner_positions = positions[np.abs(positions) <= 0.4 * LENGTH]
+    radii = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inner_positions, LENGTH, RADIUS)
+    assert radii == pytest.approx(local_radius(Tapered(0.05), inner_positions, 0.8 * LENGTH, RADIUS))
 
 
 def test_infinite_drop_continues_up_to_slope_one() -> None:
-    effective = 0.9 * LENGTH
-    profile = EffectiveLength(Lundberg(2e-7), effective)
+    effective_length = 0.9 * LENGTH
+    profile = EffectiveLength(Lundberg(2e-7), effective_length)
     x = np.linspace(0.0, 0.5 * LENGTH, 100001)
     drop = profile.drop(x, LENGTH)
-    inside = x < 0.4999 * effective
-    assert drop[inside] == pytest.approx(Lundberg(2e-7).drop(x[inside], effective))
+    inner_positions = x < 0.4999 * effective_length
+    assert drop[inner_positions] == pytest.approx(Lundberg(2e-7).drop(x[inner_positions], effective_length))
     assert np.isfinite(drop).all()
     assert (np.diff(drop) >= 0).all()
     assert drop[-1] > 0.05 * LENGTH
@@ -101,6 +106,6 @@ def test_repr_contains_the_end_drop() -> None:
         ),
     ],
 )
-def test_bad_input_is_rejected(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=re.escape(message)):
         create()

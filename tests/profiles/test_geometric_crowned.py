@@ -33,13 +33,15 @@ def test_full_crown_of_large_radius_equals_the_parabola(positions: np.ndarray) -
     )
 
 
-@given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
-def test_arcs_of_a_partial_crown_join_tangentially(straight: float, crown: float, dub: float) -> None:
+@given(straight_length=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), end_length=st.floats(0.1e-3, 1.5e-3))
+def test_arcs_of_a_partial_crown_join_tangentially(straight_length: float, crown: float, end_length: float) -> None:
     """The curvatures are 0, 1/R1, 1/R2: their integral from mid-length is the slope, the slope's integral the drop."""
-    profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
+    profile = PartialCrown(straight_length, crown, end_length, dub_radius=0.02)
     x = np.linspace(0.0, HALF_LENGTH, 4001)
     midpoints = 0.5 * (x[1:] + x[:-1])
-    curvature = np.where(midpoints < straight / 2, 0.0, np.where(midpoints < HALF_LENGTH - dub, 1 / crown, 1 / 0.02))
+    curvature = np.where(
+        midpoints < straight_length / 2, 0.0, np.where(midpoints < HALF_LENGTH - end_length, 1 / crown, 1 / 0.02)
+    )
     sine = np.concatenate([[0.0], np.cumsum(curvature) * (x[1] - x[0])])
     slope = sine / np.sqrt(1 - sine**2)
     drop = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1])) * (x[1] - x[0])])
@@ -60,11 +62,11 @@ def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None
     )
 
 
-def test_corner_radius_is_added(positions: np.ndarray) -> None:
+def test_drop_of_corner_radius_is_added(positions: np.ndarray) -> None:
     crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
     drop = (crown + corner).drop(positions, LENGTH)
-    inside = np.abs(positions) <= HALF_LENGTH - 0.2e-3
-    np.testing.assert_array_equal(drop[inside], crown.drop(positions, LENGTH)[inside])
+    is_inner = np.abs(positions) <= HALF_LENGTH - 0.2e-3
+    np.testing.assert_array_equal(drop[is_inner], crown.drop(positions, LENGTH)[is_inner])
     assert drop[-1] == pytest.approx(crown.drop(positions, LENGTH)[-1] + 0.2e-3)
 
 
@@ -86,7 +88,7 @@ def test_corner_radius_is_added(positions: np.ndarray) -> None:
         (lambda: PartialCrown(9e-3, 1.0, 1e-3, 0.1).drop(np.zeros(1), LENGTH), "dub_length = 0.001: must be at most"),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_crown_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 
@@ -96,8 +98,8 @@ def test_sphere_pressure_equals_hertz_point_contact(solve_profile, steel: Materi
     result = solve_profile(Sphere(RADIUS), length, load=load, cells=4, window=4.0)
     radius = np.cbrt(0.75 * load * RADIUS / steel.plane_strain_modulus)
     assert float(result["pressure"].max()) == pytest.approx(1.5 * load / (np.pi * radius**2), rel=5e-3)
-    cell = float(result["x"][1] - result["x"][0]) * float(result["y"][1] - result["y"][0])
-    assert float((result["pressure"] > 0).sum()) * cell == pytest.approx(np.pi * radius**2, rel=0.04)
+    cell_area = float(result["x"][1] - result["x"][0]) * float(result["y"][1] - result["y"][0])
+    assert float((result["pressure"] > 0).sum()) * cell_area == pytest.approx(np.pi * radius**2, rel=0.04)
 
 
 def test_sphere_equals_an_ellipsoid_of_equal_radius(positions: np.ndarray) -> None:
@@ -108,9 +110,9 @@ def test_sphere_equals_an_ellipsoid_of_equal_radius(positions: np.ndarray) -> No
 def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: Material) -> None:
     load, length, crown = 200.0, 4e-3, 8 * RADIUS
     result = solve_profile(Ellipsoid(crown), length, load=load, cells=3, window=5.0)
-    exact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
-    assert float(result["pressure"].max()) == pytest.approx(exact.max_pressure, rel=5e-3)
-    for axis, semi_axis in (("x", exact.long), ("y", exact.short)):
+    exact_contact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
+    assert float(result["pressure"].max()) == pytest.approx(exact_contact.max_pressure, rel=5e-3)
+    for axis, semi_axis in (("x", exact_contact.long), ("y", exact_contact.short)):
         positions = result[axis].values
         other_axis = "y" if axis == "x" else "x"
         loaded_positions = positions[(result["pressure"] > 0).any(other_axis).values]
@@ -129,6 +131,6 @@ def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: 
         ),
     ],
 )
-def test_error_names_the_bad_radius(create, message: str) -> None:
+def test_invalid_sphere_or_ellipsoid_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()

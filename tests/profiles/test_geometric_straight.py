@@ -9,18 +9,18 @@ from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, Roller
 from contactstudy.profiles import Cylinder, Tapered
-from tests.profiles.conftest import LENGTH, RADIUS, axial_results
+from tests.profiles.conftest import LENGTH, RADIUS, list_axial_results
 
 
 @given(st.floats(1e-6, LENGTH / 2), st.floats(0.0, LENGTH / 2))
 def test_fillet_lies_on_its_circle(fillet: float, x: float) -> None:
     """The circle's centre is one fillet radius from the end face and from the generatrix."""
     drop = float(Cylinder(fillet).drop(np.array([x]), LENGTH)[0])
-    begin = LENGTH / 2 - fillet
-    if x <= begin:
+    fillet_start = LENGTH / 2 - fillet
+    if x <= fillet_start:
         assert drop == 0.0
     else:
-        assert np.hypot(x - begin, fillet - drop) == pytest.approx(fillet, rel=1e-9)
+        assert np.hypot(x - fillet_start, fillet - drop) == pytest.approx(fillet, rel=1e-9)
 
 
 @given(
@@ -43,31 +43,31 @@ def test_taper_radius_equals_the_cone_curvature(angle: float, x: float) -> None:
     from scipy.optimize import brentq
 
     roller_radius, y = 20e-3, 1e-5
-    cos, sin = np.cos(angle), np.sin(angle)
+    cosine, sine = np.cos(angle), np.sin(angle)
 
-    def distance_outside(height: float) -> float:
+    def compute_distance_outside(height: float) -> float:
         """Distance from the axis minus the cone's radius, at `height` below the tangent plane."""
-        along_axis, below_axis = x * cos + height * sin, roller_radius + x * sin - height * cos
+        along_axis, below_axis = x * cosine + height * sine, roller_radius + x * sine - height * cosine
         return float(np.hypot(y, below_axis) - (roller_radius + along_axis * np.tan(angle)))
 
-    exact = brentq(distance_outside, -1e-9, 1e-6, xtol=1e-20)
+    exact_drop = brentq(compute_distance_outside, -1e-9, 1e-6, xtol=1e-20)
     radius = float(Tapered(angle).local_radius(np.array([x]), LENGTH, roller_radius)[0])
-    assert y**2 / (2 * radius) == pytest.approx(exact, rel=1e-4)
+    assert y**2 / (2 * radius) == pytest.approx(exact_drop, rel=1e-4)
 
 
 def test_taper_pressure_follows_the_local_radius(solve_profile) -> None:
     """Sections are line contacts of local load and radius; the pressure is higher at the small end."""
     profile = Tapered(half_angle=0.2)
-    position, peak, line_load = axial_results(solve_profile(profile, 4e-3))
-    inside = np.abs(position) < 0.6
+    position, peak, line_load = list_axial_results(solve_profile(profile, 4e-3))
+    is_inner = np.abs(position) < 0.6
     radius = profile.local_radius(2e-3 * position, 4e-3, RADIUS)
-    np.testing.assert_allclose(peak[inside], np.sqrt(line_load * RADIUS / radius)[inside], rtol=4e-3)
+    np.testing.assert_allclose(peak[is_inner], np.sqrt(line_load * RADIUS / radius)[is_inner], rtol=4e-3)
     assert np.interp(-0.6, position, peak) > np.interp(0.6, position, peak) + 0.03
 
 
 def test_mirrored_taper_has_the_mirrored_pressure(solve_profile) -> None:
     pressure, mirrored_pressure = (
-        axial_results(solve_profile(Tapered(angle), 2e-3, cells=4))[1] for angle in (0.1, -0.1)
+        list_axial_results(solve_profile(Tapered(angle), 2e-3, cells=4))[1] for angle in (0.1, -0.1)
     )
     np.testing.assert_allclose(pressure, mirrored_pressure[::-1], atol=1e-5)
     assert np.ptp(pressure - pressure[::-1]) > 0.01
@@ -88,6 +88,6 @@ def test_mirrored_taper_has_the_mirrored_pressure(solve_profile) -> None:
         ),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from contactstudy import InvalidInputError, Material
 from contactstudy.bodies.hertz import line_load
 from contactstudy.profiles import Cylinder, FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
-from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, axial_results
+from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, list_axial_results
 
 HALF_LENGTH = LENGTH / 2
 
@@ -18,9 +18,13 @@ HALF_LENGTH = LENGTH / 2
 def test_lundberg_equals_two_logarithms(positions: np.ndarray) -> None:
     """The drop is a sum of logarithms of the distances to both ends."""
     profile = Lundberg(amplitude=2e-7, delta=1.5)
-    inner = positions[1:-1]
-    expected = -1.5 * 2e-7 * (np.log(HALF_LENGTH - inner) + np.log(HALF_LENGTH + inner) - 2 * np.log(HALF_LENGTH))
-    np.testing.assert_allclose(profile.drop(inner, LENGTH), expected, rtol=1e-12, atol=1e-20)
+    inner_positions = positions[1:-1]
+    expected = (
+        -1.5
+        * 2e-7
+        * (np.log(HALF_LENGTH - inner_positions) + np.log(HALF_LENGTH + inner_positions) - 2 * np.log(HALF_LENGTH))
+    )
+    np.testing.assert_allclose(profile.drop(inner_positions, LENGTH), expected, rtol=1e-12, atol=1e-20)
     assert np.isinf(profile.drop(positions[[0, -1]], LENGTH)).all()
 
 
@@ -43,23 +47,23 @@ def test_lundberg_pressure_is_flat_at_the_design_load(solve_profile, steel: Mate
     The pressure of a sharp cylinder varies by 11 %, that of a delta of 0.7 or 1.4 by more than twice 1.2 %.
     """
 
-    def variation(profile) -> float:
-        position, peak, _ = axial_results(solve_profile(profile, 4e-3))
-        inside = peak[np.abs(position) < 0.9]
-        return float(np.ptp(inside))
+    def compute_variation(profile) -> float:
+        position, peak, _ = list_axial_results(solve_profile(profile, 4e-3))
+        inner_peaks = peak[np.abs(position) < 0.9]
+        return float(np.ptp(inner_peaks))
 
-    def lundberg(delta: float) -> Lundberg:
+    def make_lundberg(delta: float) -> Lundberg:
         return Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus, delta=delta)
 
-    reference = variation(lundberg(1.0))
-    assert reference < 0.012
-    assert variation(Cylinder()) > 0.1
-    assert min(variation(lundberg(0.7)), variation(lundberg(1.4))) > 2 * reference
+    reference_variation = compute_variation(make_lundberg(1.0))
+    assert reference_variation < 0.012
+    assert compute_variation(Cylinder()) > 0.1
+    assert min(compute_variation(make_lundberg(0.7)), compute_variation(make_lundberg(1.4))) > 2 * reference_variation
 
 
 def test_lundberg_pressure_decreases_outwards_below_the_design_load(solve_profile, steel: Material) -> None:
     profile = Lundberg.for_pressure(2 * PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
-    position, peak, _ = axial_results(solve_profile(profile, 4e-3))
+    position, peak, _ = list_axial_results(solve_profile(profile, 4e-3))
     second_half = position > 0
     assert (np.diff(peak[second_half]) <= 0).all()
     assert np.interp(0.9, position, peak) < 0.8
@@ -74,7 +78,7 @@ def test_end_drop_of_johns_and_gohar(steel: Material) -> None:
     assert profile.half_width == pytest.approx(65e-6)
 
 
-def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> None:
+def test_johns_gohar_profile_equals_formula_with_rounded_constant(positions: np.ndarray) -> None:
     profile = JohnsGohar(amplitude=2e-7, half_width=1e-4)
     expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF_LENGTH) * (2 * positions / LENGTH) ** 2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-4, atol=1e-22)
@@ -83,34 +87,36 @@ def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> Non
 @given(st.floats(1e-9, 1e-5), st.floats(1e-7, 1e-3))
 def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_width: float) -> None:
     x = HALF_LENGTH * np.linspace(-1, 1, 41)
-    johns = JohnsGohar(amplitude, half_width)
-    fujiwara = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
-    np.testing.assert_allclose(fujiwara.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
+    johns_gohar = JohnsGohar(amplitude, half_width)
+    fujiwara_kawase = FujiwaraKawase(amplitude, edge_drop=johns_gohar.edge_drop(LENGTH))
+    np.testing.assert_allclose(
+        fujiwara_kawase.drop(x, LENGTH), johns_gohar.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude
+    )
 
 
 @given(st.floats(1e-9, 1e-5))
 def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
     x = HALF_LENGTH * np.linspace(-0.999, 0.999, 41)
-    lundberg = Lundberg(amplitude).drop(x, LENGTH)
-    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
-    deep = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
-    np.testing.assert_allclose(deep.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
+    lundberg_drop = Lundberg(amplitude).drop(x, LENGTH)
+    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg_drop, rtol=1e-12)
+    deep_profile = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
+    np.testing.assert_allclose(deep_profile.drop(x, LENGTH), lundberg_drop, rtol=1e-9, atol=1e-12 * amplitude)
 
 
-def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
-    """The formula has the crowned length a' of one side, and y from the roller's end, as in the paper."""
+def test_fujiwara_and_kawase_equals_paper(positions: np.ndarray) -> None:
+    """The formula of the paper: crowned length a' of one side, distance y from the roller's end."""
     amplitude, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
     profile = FujiwaraKawase(amplitude, end_drop, k1, k2)
     crown_length = k2 * HALF_LENGTH
-    from_end = HALF_LENGTH - np.abs(positions)
-    scaled_distance = np.where(from_end < crown_length, 1 - from_end / crown_length, 0.0)
+    end_distance = HALF_LENGTH - np.abs(positions)
+    scaled_distance = np.where(end_distance < crown_length, 1 - end_distance / crown_length, 0.0)
     expected = k1 * amplitude * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * amplitude))) * scaled_distance**2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-7, atol=1e-20)
     assert profile.drop(positions, LENGTH)[[0, -1]] == pytest.approx(end_drop)
-    assert (profile.drop(positions, LENGTH)[from_end > crown_length] == 0).all()
+    assert (profile.drop(positions, LENGTH)[end_distance > crown_length] == 0).all()
 
 
-def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
+def test_design_pressure_of_fujiwara_kawase_determines_amplitude(steel: Material) -> None:
     contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
     profile = FujiwaraKawase.for_pressure(PRESSURE, edge_drop=1e-6, k1=2.0, k2=0.5, **contact)
     assert profile == FujiwaraKawase(Lundberg.for_pressure(PRESSURE, **contact).amplitude, 1e-6, 2.0, 0.5)
@@ -132,7 +138,7 @@ def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
         (lambda: FujiwaraKawase(1e-6, 1e-6, k2=1.5), "k2 = 1.5: must be at most 1"),
     ],
 )
-def test_error_names_the_bad_value(create, message: str) -> None:
+def test_invalid_argument_raises(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         create()
 
@@ -144,11 +150,11 @@ def test_error_names_the_bad_value(create, message: str) -> None:
 def test_design_load_gives_the_hertz_pressure(profile_class, parameters: dict[str, float], steel: Material) -> None:
     contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
     load = line_load(PRESSURE, **contact) * 0.8 * LENGTH
-    by_load = profile_class.for_load(load, length=0.8 * LENGTH, **contact, **parameters)
-    by_pressure = profile_class.for_pressure(PRESSURE, **contact, **parameters)
-    assert by_load.amplitude == pytest.approx(by_pressure.amplitude, rel=1e-12)
+    profile_by_load = profile_class.for_load(load, length=0.8 * LENGTH, **contact, **parameters)
+    profile_by_pressure = profile_class.for_pressure(PRESSURE, **contact, **parameters)
+    assert profile_by_load.amplitude == pytest.approx(profile_by_pressure.amplitude, rel=1e-12)
     x = np.linspace(-0.49, 0.49, 11) * LENGTH
-    np.testing.assert_allclose(by_load.drop(x, LENGTH), by_pressure.drop(x, LENGTH), rtol=1e-9)
+    np.testing.assert_allclose(profile_by_load.drop(x, LENGTH), profile_by_pressure.drop(x, LENGTH), rtol=1e-9)
     with pytest.raises(InvalidInputError, match="length = 0"):
         profile_class.for_load(load, length=0, **contact, **parameters)
 
@@ -156,18 +162,18 @@ def test_design_load_gives_the_hertz_pressure(profile_class, parameters: dict[st
 DIAMETER = 10e-3
 
 
-def test_iso_formula_of_a_short_roller() -> None:
+def test_short_iso_profile_equals_standard() -> None:
     """The formula of the standard in millimetres, with the decadic logarithm."""
     length, x = 12.0, np.linspace(-5.9, 5.9, 31)
     expected = 0.00035 * 10.0 * np.log10(1 / (1 - (2 * x / length) ** 2)) * np.log(10)
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 12e-3), expected, rtol=1e-12)
 
 
-def test_iso_formula_of_a_long_roller() -> None:
+def test_long_iso_profile_equals_standard() -> None:
     length = 40.0
     x = np.linspace(-19.9, 19.9, 81)
-    inside = np.abs(x) - (length - 25.0) / 2
-    expected = np.where(inside > 0, 0.0005 * 10 * np.log(1 / (1 - (inside / 12.5) ** 2)), 0.0)
+    crowned_distance = np.abs(x) - (length - 25.0) / 2
+    expected = np.where(crowned_distance > 0, 0.0005 * 10 * np.log(1 / (1 - (crowned_distance / 12.5) ** 2)), 0.0)
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 40e-3), expected, rtol=1e-9, atol=1e-18)
 
 
@@ -190,9 +196,9 @@ def test_iso_branches_differ_by_their_amplitudes(position: float) -> None:
 def test_short_iso_profile_is_lundbergs_for_3000_megapascals() -> None:
     """The formula contains two bodies of steel with the 207 GPa and 0.3 of the standard."""
     modulus = 207e9 / (2 * (1 - 0.3**2))
-    design = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
+    lundberg_profile = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
     x = np.array([3e-3, 4.5e-3])
-    np.testing.assert_allclose(IsoCylindrical(DIAMETER).drop(x, 10e-3), design.drop(x, 10e-3), rtol=1e-2)
+    np.testing.assert_allclose(IsoCylindrical(DIAMETER).drop(x, 10e-3), lundberg_profile.drop(x, 10e-3), rtol=1e-2)
 
 
 def test_iso_drops_are_infinite_at_the_ends() -> None:
@@ -203,6 +209,6 @@ def test_iso_drops_are_infinite_at_the_ends() -> None:
 
 @pytest.mark.parametrize("profile_class", [IsoCylindrical, IsoTapered])
 @pytest.mark.parametrize("diameter", [0.0, -1e-3, np.nan, "thick", True])
-def test_error_names_the_bad_diameter(profile_class, diameter) -> None:
+def test_invalid_diameter_raises(profile_class, diameter) -> None:
     with pytest.raises(InvalidInputError, match="diameter = "):
         profile_class(diameter)

@@ -21,14 +21,14 @@ CROWN = FullCrown(1.25)
 DROP = CROWN.drop(X - LENGTH / 2, LENGTH)
 
 
-def csv_file(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
+def write_csv(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
     path = folder / "trace.csv"
-    lines = [f"{1e3 * a:.9g}, {1e6 * b:.9g}" for a, b in zip(x, drop, strict=True)]
+    lines = [f"{1e3 * a:.9g}, {1e6 * height:.9g}" for a, height in zip(x, drop, strict=True)]
     path.write_text("\n".join(["# stylus 2 um", header, *lines]))
     return path
 
 
-def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str = "drop", sign: float = 1.0) -> Path:
+def write_netcdf(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str = "drop", sign: float = 1.0) -> Path:
     path = folder / "trace.nc"
     dataset = xr.Dataset({name: ("x", 1e6 * sign * DROP, {"units": units[1]})}, {"x": ("x", 1e3 * X, {"units": "mm"})})
     dataset["x"].attrs["units"] = units[0]
@@ -36,8 +36,8 @@ def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str =
     return path
 
 
-def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> None:
-    for path in (csv_file(tmp_path), netcdf_file(tmp_path), netcdf_file(tmp_path, name="height", sign=-1.0)):
+def test_profile_from_csv_and_netcdf_equals_crown(tmp_path: Path, positions: np.ndarray) -> None:
+    for path in (write_csv(tmp_path), write_netcdf(tmp_path), write_netcdf(tmp_path, name="height", sign=-1.0)):
         profile = Measured.from_file(path)
         np.testing.assert_allclose(
             profile.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13
@@ -46,23 +46,37 @@ def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> N
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("brackets", ["[]", "()"])
-def test_csv_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
-    (left, right), path = brackets, tmp_path / "trace.txt"
-    rows = [f"{k}{separator}{0.001 * k}{separator}note" for k in range(7)]
-    path.write_text("\n".join([separator.join((f"X {left}mm{right}", f"Height {left}µm{right}", "remark")), "", *rows]))
+def test_csv_file_may_have_several_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
+    (left_bracket, right_bracket), path = brackets, tmp_path / "trace.txt"
+    rows = [f"{row}{separator}{0.001 * row}{separator}note" for row in range(7)]
+    path.write_text(
+        "\n".join(
+            [
+                separator.join(
+                    (f"X {left_bracket}mm{right_bracket}", f"Height {left_bracket}µm{right_bracket}", "remark")
+                ),
+                "",
+                *rows,
+            ]
+        )
+    )
     profile = Measured.from_file(path, remove_offset=True)
     np.testing.assert_allclose(profile.positions, 1e-3 * np.arange(7))
     np.testing.assert_allclose(profile.drops, 1e-9 * np.arange(6, -1, -1), atol=1e-22)
 
 
 def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, positions: np.ndarray) -> None:
-    path = csv_file(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
-    uncorrected = Measured.from_file(path)
-    np.testing.assert_allclose(uncorrected.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
-    straight = Measured.from_file(path, remove_tilt=True, remove_offset=True)
-    np.testing.assert_allclose(straight.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13)
-    without_tilt = Measured.from_file(path, remove_tilt=True)
-    np.testing.assert_allclose(np.ptp(np.subtract(without_tilt.drops, straight.drops)), 0.0, atol=1e-18)
+    path = write_csv(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
+    uncorrected_profile = Measured.from_file(path)
+    np.testing.assert_allclose(uncorrected_profile.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
+    corrected_profile = Measured.from_file(path, remove_tilt=True, remove_offset=True)
+    np.testing.assert_allclose(
+        corrected_profile.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13
+    )
+    profile_without_tilt = Measured.from_file(path, remove_tilt=True)
+    np.testing.assert_allclose(
+        np.ptp(np.subtract(profile_without_tilt.drops, corrected_profile.drops)), 0.0, atol=1e-18
+    )
 
 
 @given(st.lists(st.floats(0.0, 1e-6), min_size=5, max_size=40), st.floats(-0.5, 0.5))
@@ -81,9 +95,9 @@ def test_interpolation_overshoots_only_at_crests(drops: list[float], position: f
 def test_interpolation_of_a_parabola_is_exact() -> None:
     x = np.linspace(0.0, LENGTH, 24)
     crown = (x - 0.47 * LENGTH) ** 2
-    fine = np.linspace(-LENGTH / 2, LENGTH / 2, 999)
-    drop = Measured(x, crown).drop(fine, LENGTH)
-    expected = (fine + 0.03 * LENGTH) ** 2
+    fine_x = np.linspace(-LENGTH / 2, LENGTH / 2, 999)
+    drop = Measured(x, crown).drop(fine_x, LENGTH)
+    expected = (fine_x + 0.03 * LENGTH) ** 2
     np.testing.assert_allclose(drop - drop.min(), expected - expected.min(), atol=1e-16)
 
 
@@ -94,11 +108,13 @@ def test_interpolation_contains_the_points(positions: np.ndarray) -> None:
 
 
 def test_crown_and_measured_waviness_add_up(positions: np.ndarray) -> None:
-    wave = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
-    total = Lundberg(2e-7) + wave
-    inner = positions[1:-1]
-    expected = Lundberg(2e-7).drop(inner, LENGTH) + 0.1e-6 * (1 - np.cos(2 * np.pi * (inner + 5e-3) / 2e-3))
-    np.testing.assert_allclose(total.drop(inner, LENGTH), expected, atol=1.5e-10)
+    waviness = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
+    combined_profile = Lundberg(2e-7) + waviness
+    inner_positions = positions[1:-1]
+    expected = Lundberg(2e-7).drop(inner_positions, LENGTH) + 0.1e-6 * (
+        1 - np.cos(2 * np.pi * (inner_positions + 5e-3) / 2e-3)
+    )
+    np.testing.assert_allclose(combined_profile.drop(inner_positions, LENGTH), expected, atol=1.5e-10)
 
 
 @pytest.mark.parametrize(
@@ -138,8 +154,8 @@ def test_error_contains_the_positions_of_outliers(index: int, spike: float, nois
 
 @pytest.mark.parametrize("difference", [-0.2e-3, 0.2e-3])
 def test_measured_length_must_equal_the_roller(difference: float) -> None:
-    word = "longer" if difference < 0 else "shorter"
-    with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{word}"):
+    comparison = "longer" if difference < 0 else "shorter"
+    with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{comparison}"):
         Roller(radius=RADIUS, length=LENGTH + difference, profile=Measured(X, DROP))
 
 
@@ -168,12 +184,12 @@ def replace_entry(values: np.ndarray, index: int, value: float) -> np.ndarray:
         (X[:4], DROP[:4], "positions = '4 positions': must be at least 5"),
     ],
 )
-def test_error_names_the_bad_points(x, drop, message: str) -> None:
+def test_invalid_points_raise(x, drop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Measured(x, drop)
 
 
-def test_error_names_the_bad_spike() -> None:
+def test_invalid_spike_limit_raises() -> None:
     with pytest.raises(InvalidInputError, match="largest_spike = 0"):
         Measured(X, DROP, largest_spike=0)
 
@@ -196,26 +212,26 @@ def test_error_names_the_bad_spike() -> None:
         ("x [mm], drop [um]\n0, 0\n,0\n2, 0\n3, 0\n4, 0\n5, 0", "positions = 'nan at position 1'"),
     ],
 )
-def test_error_names_the_bad_csv_file(tmp_path: Path, text: str, message: str) -> None:
+def test_invalid_csv_file_raises(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "trace.csv"
     path.write_text(text)
     with pytest.raises(InvalidInputError, match=message):
         Measured.from_file(path)
 
 
-def test_error_names_the_bad_netcdf_file(tmp_path: Path) -> None:
+def test_invalid_netcdf_file_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="unit of x = 'deg'"):
-        Measured.from_file(netcdf_file(tmp_path, units=("deg", "um")))
+        Measured.from_file(write_netcdf(tmp_path, units=("deg", "um")))
     with pytest.raises(InvalidInputError, match="a file with drop or height along x"):
-        Measured.from_file(netcdf_file(tmp_path, name="depth"))
-    broken = tmp_path / "broken.nc"
-    broken.write_text("no netCDF")
+        Measured.from_file(write_netcdf(tmp_path, name="depth"))
+    broken_path = tmp_path / "broken.nc"
+    broken_path.write_text("no netCDF")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read"):
-        Measured.from_file(broken)
+        Measured.from_file(broken_path)
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "missing.nc"])
-def test_error_names_the_missing_file(tmp_path: Path, name: str) -> None:
+def test_missing_file_raises(tmp_path: Path, name: str) -> None:
     with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
         Measured.from_file(tmp_path / name)
 
@@ -225,22 +241,22 @@ NOISY = DROP + NOISE - (DROP + NOISE).min()
 
 
 def test_filter_preserves_the_crown_and_reduces_noise() -> None:
-    unfiltered, filtered = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
-    errors = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (unfiltered, filtered)]
+    unfiltered_profile, filtered_profile = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
+    errors = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (unfiltered_profile, filtered_profile)]
     assert np.std(errors[0]) == pytest.approx(0.05e-6, rel=0.2)
     assert np.std(errors[1]) < 0.4 * np.std(errors[0])
-    assert 0.0 <= filtered.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
-    assert "Gaussian filter with cut-off 0.8 mm" in repr(filtered)
-    assert "filter" not in repr(unfiltered)
-    assert pickle.loads(pickle.dumps(filtered)) == filtered != unfiltered
+    assert 0.0 <= filtered_profile.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
+    assert "Gaussian filter with cut-off 0.8 mm" in repr(filtered_profile)
+    assert "filter" not in repr(unfiltered_profile)
+    assert pickle.loads(pickle.dumps(filtered_profile)) == filtered_profile != unfiltered_profile
 
 
 def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
-    path = csv_file(tmp_path, drop=DROP + NOISE + 2e-6)
-    from_file = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
-    assert from_file.cutoff == 0.8e-3
+    path = write_csv(tmp_path, drop=DROP + NOISE + 2e-6)
+    file_profile = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
+    assert file_profile.cutoff == 0.8e-3
     np.testing.assert_allclose(
-        from_file.drop(X - LENGTH / 2, LENGTH),
+        file_profile.drop(X - LENGTH / 2, LENGTH),
         Measured(X, NOISY, cutoff=0.8e-3).drop(X - LENGTH / 2, LENGTH),
         rtol=1e-5,
         atol=1e-13,
@@ -248,7 +264,7 @@ def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cutoff", [0.0, -1e-3, 0.2e-3, 11e-3, 0.8, "0.8 mm", np.nan])
-def test_error_names_the_bad_cutoff(cutoff: object) -> None:
+def test_invalid_cutoff_raises(cutoff: object) -> None:
     with pytest.raises(InvalidInputError, match="cutoff = "):
         Measured(X, DROP, cutoff=cutoff)
 
@@ -260,25 +276,25 @@ def test_outlier_check_precedes_the_filter() -> None:
         Measured(X, drop, cutoff=0.8e-3)
 
 
-def test_line_and_map_of_an_instrument(tmp_path: Path, positions: np.ndarray) -> None:
-    """Heights of the crown; end II is lower, which distinguishes directions."""
+def test_profile_from_line_and_map_of_instrument_equals_crown(tmp_path: Path, positions: np.ndarray) -> None:
+    """The heights are lower at end II, so that both directions differ."""
     line = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
     y = np.linspace(0.0, 0.3e-3, 16)
     heights = line[:, None] - (y - 0.13e-3) ** 2 / (2 * RADIUS)
     x3pio.Profile.from_array(line, x_scale=X[1]).save(tmp_path / "line.x3p")
     x3pio.write(tmp_path / "map.x3p", heights.T, x_scale=X[1], y_scale=y[1])
     x3pio.write(tmp_path / "other.x3p", heights, x_scale=y[1], y_scale=X[1])
-    for name, turn, side in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
+    for name, turn, x_sign in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
         profile = Measured.from_file(tmp_path / f"{name}.x3p", remove_offset=True, turn=turn)
-        expected = CROWN.drop(positions, LENGTH) + 4e-4 * np.maximum(side * positions, 0.0)
+        expected = CROWN.drop(positions, LENGTH) + 4e-4 * np.maximum(x_sign * positions, 0.0)
         np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-6, atol=1e-12)
     assert np.ptp(Measured.from_file(tmp_path / "other.x3p", remove_offset=True).positions) == pytest.approx(0.3e-3)
 
 
 def test_rotation_exchanges_the_ends_of_columns(tmp_path: Path) -> None:
-    path = csv_file(tmp_path, drop=DROP + 2e-4 * X)
-    rotated = Measured.from_file(path, turn=180)
-    np.testing.assert_allclose(rotated.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
+    path = write_csv(tmp_path, drop=DROP + 2e-4 * X)
+    rotated_profile = Measured.from_file(path, turn=180)
+    np.testing.assert_allclose(rotated_profile.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
     with pytest.raises(InvalidInputError, match="turn = 90: must be one of 0, 180"):
         Measured.from_file(path, turn=90)
 

@@ -10,30 +10,32 @@ X, Y = np.linspace(0.0, 10e-3, 201), np.linspace(0.0, 0.6e-3, 61)
 CROWN = -((X - 5e-3) ** 2) / 2.5
 
 
-def roller(shift: float = 0.3e-3, turn: float = 0.0, radius: float = 6e-3) -> np.ndarray:
-    """Heights of a roller whose axis is turned in the plane of the map."""
-    lateral = Y - shift - turn * (X[:, None] - 5e-3)
+def roller_heights(shift: float = 0.3e-3, angle: float = 0.0, radius: float = 6e-3) -> np.ndarray:
+    """Heights of a roller; its axis is rotated in the plane of the map by `angle`."""
+    lateral = Y - shift - angle * (X[:, None] - 5e-3)
     return CROWN[:, None] + np.sqrt(radius**2 - lateral**2) - radius
 
 
-@pytest.mark.parametrize(("shift", "turn"), [(0.3e-3, 0.0), (0.2e-3, 0.0), (0.3e-3, 0.01), (0.28e-3, -0.02)])
-def test_ridge_follows_the_highest_line(shift: float, turn: float) -> None:
+@pytest.mark.parametrize(("shift", "angle"), [(0.3e-3, 0.0), (0.2e-3, 0.0), (0.3e-3, 0.01), (0.28e-3, -0.02)])
+def test_ridge_follows_the_highest_line(shift: float, angle: float) -> None:
     """The tolerance is the difference of circle and parabola at this width."""
-    np.testing.assert_allclose(extract_ridge(X, Y, roller(shift, turn)), CROWN, atol=2e-9)
+    np.testing.assert_allclose(extract_ridge(X, Y, roller_heights(shift, angle)), CROWN, atol=2e-9)
 
 
-def test_ridge_with_missing_points_and_noise() -> None:
+def test_ridge_of_noisy_map_is_within_noise() -> None:
     rng = np.random.default_rng(0)
-    noisy = roller(0.25e-3, 0.01) + 0.1e-6 * rng.standard_normal((X.size, Y.size))
-    noisy[rng.random(noisy.shape) < 0.2] = np.nan
-    noisy[7, 10:] = np.nan
-    line = extract_ridge(X, Y, noisy)
+    noisy_heights = roller_heights(0.25e-3, 0.01) + 0.1e-6 * rng.standard_normal((X.size, Y.size))
+    noisy_heights[rng.random(noisy_heights.shape) < 0.2] = np.nan
+    noisy_heights[7, 10:] = np.nan
+    line = extract_ridge(X, Y, noisy_heights)
     assert np.flatnonzero(np.isnan(line)).tolist() == [7]
-    finite = np.isfinite(line)
-    assert np.std((line - CROWN)[finite]) < 1.3 * 0.1e-6 / np.sqrt(0.8 * Y.size)
+    is_finite = np.isfinite(line)
+    assert np.std((line - CROWN)[is_finite]) < 1.3 * 0.1e-6 / np.sqrt(0.8 * Y.size)
 
 
-@pytest.mark.parametrize("heights", [np.zeros((201, 61)), -roller(), roller(shift=1.5e-3), np.full((201, 61), np.nan)])
+@pytest.mark.parametrize(
+    "heights", [np.zeros((201, 61)), -roller_heights(), roller_heights(shift=1.5e-3), np.full((201, 61), np.nan)]
+)
 def test_map_without_a_roller_is_rejected(heights: np.ndarray) -> None:
     with pytest.raises(InvalidInputError, match="highest line of a roller"):
         extract_ridge(X, Y, heights)

@@ -16,21 +16,21 @@ POINTS = [(0.0, 0.0), (2.5, 1.25), (5.0, 3.125)]
 COLUMNS = ("x",), ("drop",)
 
 
-def german_table(separator: str, mark: str = ",") -> str:
-    rows = [f"{x:.2f}{separator}{drop:.3f}".replace(".", mark) for x, drop in POINTS]
+def format_german_table(separator: str, decimal_mark: str = ",") -> str:
+    rows = [f"{x:.2f}{separator}{drop:.3f}".replace(".", decimal_mark) for x, drop in POINTS]
     return "\n".join([f"x [mm]{separator}drop [µm]", *rows])
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "utf-8", "utf-8-sig", "utf-16", "mac-roman"])
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_german_spreadsheet_is_readable(tmp_path: Path, encoding: str, separator: str) -> None:
-    (tmp_path / "a.csv").write_bytes(german_table(separator).encode(encoding))
+    (tmp_path / "a.csv").write_bytes(format_german_table(separator).encode(encoding))
     columns = read_columns(tmp_path / "a.csv", *COLUMNS)
     np.testing.assert_allclose(np.transpose([columns["x"], columns["drop"]]), np.multiply(POINTS, [1e-3, 1e-6]))
 
 
-def test_unknown_encoding_names_the_remedy(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_bytes(german_table(";").encode("cp850"))
+def test_unknown_encoding_raises_with_remedy(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes(format_german_table(";").encode("cp850"))
     with pytest.raises(InvalidInputError, match=r"unit of drop.*save the file as UTF-8"):
         read_columns(tmp_path / "a.csv", *COLUMNS)
 
@@ -50,7 +50,7 @@ def test_ambiguous_commas_are_rejected(tmp_path: Path, rows: str, message: str) 
 
 
 @pytest.mark.parametrize("header", ["x / mm;drop / um", "x/mm; drop/um", "x (mm);drop [um]"])
-def test_notations_of_units_in_a_header(tmp_path: Path, header: str) -> None:
+def test_header_units_have_several_notations(tmp_path: Path, header: str) -> None:
     (tmp_path / "a.csv").write_text(f"{header}\n1;2\n2;3\n")
     columns = read_columns(tmp_path / "a.csv", *COLUMNS)
     x, drop = columns["x"], columns["drop"]
@@ -58,7 +58,7 @@ def test_notations_of_units_in_a_header(tmp_path: Path, header: str) -> None:
     assert drop.tolist() == pytest.approx([2e-6, 3e-6])
 
 
-def workbook() -> bytes:
+def make_workbook() -> bytes:
     with zipfile.ZipFile(content := io.BytesIO(), "w") as archive:
         archive.writestr("xl/workbook.xml", "<workbook/>")
     return content.getvalue()
@@ -66,7 +66,7 @@ def workbook() -> bytes:
 
 FOREIGN_FILES = {
     "picture": (b"\x89PNG\r\n\x1a\n and so on", "it is a picture without heights"),
-    "workbook": (workbook(), "it is a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"),
+    "workbook": (make_workbook(), "it is a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"),
     "bitmap": (b"BM" + (1078).to_bytes(4, "little") + bytes(8), "it is a picture"),
     "netCDF": (b"CDF\x01" + bytes(8), "it is netCDF: let its name end with .nc"),
     "document": (b"%PDF-1.7 and so on", "it is a PDF document"),
@@ -84,7 +84,7 @@ def test_foreign_files_are_identified(tmp_path: Path, kind: str, name: str) -> N
 
 
 @pytest.mark.parametrize("column", ["BM nr", "CDF"])
-def test_column_name_equal_to_a_file_signature(tmp_path: Path, column: str) -> None:
+def test_column_name_may_equal_file_signature(tmp_path: Path, column: str) -> None:
     (tmp_path / "a.csv").write_text(f"{column},x [mm], drop [um]\n1,0,2\n2,1,3\n")
     columns = read_columns(tmp_path / "a.csv", *COLUMNS)
     np.testing.assert_allclose([columns["x"], columns["drop"]], [[0, 1e-3], [2e-6, 3e-6]])
@@ -112,7 +112,7 @@ def test_other_number_formats_are_rejected(tmp_path, field):
 
 
 @pytest.mark.parametrize("field", ["1", "+1.", "-.5e-3", " 2.5E+4 ", "nan", "", "inf"])
-def test_number_formats(tmp_path, field):
+def test_accepted_number_formats(tmp_path, field):
     expected = float(field) if field.strip() else np.nan
     columns = write_and_read(tmp_path / "a.csv", f"x [m], drop [m]\n1, {field}\n")
     np.testing.assert_equal(columns["drop"], [expected])

@@ -20,11 +20,11 @@ from contactstudy.report import figures
 from contactstudy.report import page as pages
 from contactstudy.report.page import figures_of_folder
 from contactstudy.study import load_case, run_study
-from tests.browser import browser, chromium
+from tests.browser import browser, find_chromium
 from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
-VOID = {"meta", "img", "br", "link", "input"}
+VOID_TAGS = {"meta", "img", "br", "link", "input"}
 
 
 class Page(HTMLParser):
@@ -51,7 +51,7 @@ class Page(HTMLParser):
             self.links.add(values["href"])
         if "src" in values:
             self.fetched.append(values["src"])
-        if tag not in VOID:
+        if tag not in VOID_TAGS:
             self.open.append(tag)
 
     def handle_startendtag(self, tag, attrs):
@@ -78,13 +78,13 @@ def read_page(path: Path) -> Page:
 
 
 @pytest.fixture
-def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
+def skip_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the encoding of drawn figures by an empty address."""
     for module in (figures, pages):
         monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
 
-def test_page_of_a_case(case_result: xr.Dataset, tmp_path: Path) -> None:
+def test_page_of_case_contains_inputs_and_assessment(case_result: xr.Dataset, tmp_path: Path) -> None:
     case_result.to_netcdf(tmp_path / "roller.nc")
     page = read_page(report.write(tmp_path / "roller.nc"))
     for text in (
@@ -98,8 +98,8 @@ def test_page_of_a_case(case_result: xr.Dataset, tmp_path: Path) -> None:
     assert len(page.fetched) == 7
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_singular_peak(case_result: xr.Dataset) -> None:
+@pytest.mark.usefixtures("skip_encoding")
+def test_page_of_singular_peak_has_marks(case_result: xr.Dataset) -> None:
     singular = case_result.assign(
         peak_pressure=np.inf, peak_pressure_error=np.inf, end_pressure_first=np.inf, end_intensity_first=1e6
     ).assign(end_exponent_first=0.5)
@@ -109,16 +109,18 @@ def test_singular_peak(case_result: xr.Dataset) -> None:
     assert "its intensity replaces the peak" in page.text
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_singular_corner(case_result: xr.Dataset) -> None:
-    corner = case_result.assign(peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6)
-    page = Page(report.html(corner))
+@pytest.mark.usefixtures("skip_encoding")
+def test_page_of_singular_corner_has_position(case_result: xr.Dataset) -> None:
+    corner_result = case_result.assign(
+        peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6
+    )
+    page = Page(report.html(corner_result))
     assert page.text.count("singular: unbounded towards the corner at x = 5 mm") == 3
     assert "distance d0 in the law of the pressure at the corner" in page.text
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_dataset_without_inputs(case_result: xr.Dataset) -> None:
+@pytest.mark.usefixtures("skip_encoding")
+def test_page_without_inputs_has_remark(case_result: xr.Dataset) -> None:
     page = Page(report.html(case_result.drop_attrs()))
     assert "contains no inputs" in page.text
 
@@ -137,7 +139,7 @@ def page(folder: Path) -> Page:
     return read_page(report.write(folder))
 
 
-def test_page_of_a_study(page: Page) -> None:
+def test_page_of_study_contains_all_cases(page: Page) -> None:
     for text in (
         *("Study small", "Made up.", "4 ok", "4 failed", "4 skipped", "WindowError: this friction fails in tests"),
         *("<b>rounded</b>", "5 mm", "error not estimated", "4 cases", "Are these numbers real?"),
@@ -148,38 +150,38 @@ def test_page_of_a_study(page: Page) -> None:
     assert len(page.fetched) == 2
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_corners_in_the_table_of_a_study(tmp_path: Path) -> None:
-    corner = {"corner_x": 0.1e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8, "corner_distance": 54e-6}
+@pytest.mark.usefixtures("skip_encoding")
+def test_study_table_contains_corners(tmp_path: Path) -> None:
+    corner_values = {"corner_x": 0.1e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8, "corner_distance": 54e-6}
 
     def solve_corner(case: Case, *arguments, **keywords) -> xr.Dataset:
-        values = corner | {"corner_distance_error": 1.3e-6}
+        values = corner_values | {"corner_distance_error": 1.3e-6}
         return solve_fake(case, *arguments, **keywords).assign(values if case.friction else {})
 
     run_study(small_study(), tmp_path, workers=0, solver=solve_corner, progress=False)
     text = read_page(report.write(tmp_path)).text
-    for heading in (pages.HEADINGS[name] for name in corner):
+    for heading in (pages.HEADINGS[name] for name in corner_values):
         assert heading in text
     assert text.count("0.1 mm 0.02 0.73 GPa 54.0 ± 1.3 µm") == 2
 
 
-def converged_rows(*errors: float) -> list[pages.Row]:
+def make_converged_rows(*errors: float) -> list[pages.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
     return [pages._create_row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
 
 
-def test_reason_of_several_cases() -> None:
-    ((rating, reason, cases), (best_group, _, _)) = pages._count_answers(converged_rows(0.1, 0.06, 0.001))
+def test_assessment_reason_contains_worst_and_best_case() -> None:
+    ((rating, reason, cases), (best_group, _, _)) = pages._count_answers(make_converged_rows(0.1, 0.06, 0.001))
     assert (rating, len(cases), best_group) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
-@pytest.mark.usefixtures("without_encoding")
+@pytest.mark.usefixtures("skip_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
-    assert pages._summarise_answers(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
-    assert pages._summarise_answers(converged_rows(0.001, 0.001)) == ("yes", "2 real")
-    runs = list(MALFORMED)
+    assert pages._summarise_answers(make_converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert pages._summarise_answers(make_converged_rows(0.001, 0.001)) == ("yes", "2 real")
+    runs = list(MALFORMED_ATTRIBUTES)
 
     def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
         values = {"end_pressure_first": 0.0, "end_pressure_last": 0.0, "peak_pressure": 2e9, "peak_pressure_error": 2e8}
@@ -199,8 +201,8 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert names == ["end_pressure_first"]
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_inputs_in_engineers_units(tmp_path: Path) -> None:
+@pytest.mark.usefixtures("skip_encoding")
+def test_study_page_has_engineering_units(tmp_path: Path) -> None:
     profile = {"kind": "cylinder", "fillet_radius": 5e-5}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep={"tilt": [0.0, 3e-4], "profile": ["cylinder", profile]})
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
@@ -213,9 +215,9 @@ def test_inputs_in_engineers_units(tmp_path: Path) -> None:
     pyplot.close("all")
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
-    def sharp(case: Case, *arguments, **keywords) -> xr.Dataset:
+@pytest.mark.usefixtures("skip_encoding")
+def test_study_page_contains_laws_of_singular_ends(tmp_path: Path) -> None:
+    def solve_sharp(case: Case, *arguments, **keywords) -> xr.Dataset:
         units = {"units": "Pa m^0.5" if case.friction == 0 else "Pa m^0.34"}
         intensity, error = (xr.DataArray(value, attrs=units) for value in (3.245e6, 1.8e4))
         law = {"end_intensity": intensity, "end_intensity_first": intensity, "end_intensity_first_error": error}
@@ -224,7 +226,7 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
         peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
         return solve_fake(case, *arguments, **keywords).assign(law | exponents | loads | peaks)
 
-    run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
+    run_study(small_study(), tmp_path, workers=0, solver=solve_sharp, progress=False)
     page = Page(report.html(tmp_path))
     for text in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "GPa mm^0.34", "load on the last a, end I"):
         assert text in page.text, text
@@ -241,8 +243,8 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
 
 
 @pytest.mark.browser
-@pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
-def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
+@pytest.mark.skipif(find_chromium() is None, reason="Chromium is not installed")
+def test_figures_fit_screen_width(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("playwright")
     path = report.write(folder, tmp_path / "study.html")
     natural_widths = {}
@@ -258,8 +260,8 @@ def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
     assert all(shown_width < 400 or shown_width <= 0.5 * natural + 2 for shown_width, natural in natural_widths[420])
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_page_of_a_case_of_a_study(folder: Path, tmp_path: Path, capsys) -> None:
+@pytest.mark.usefixtures("skip_encoding")
+def test_page_of_study_case_names_study(folder: Path, tmp_path: Path, capsys) -> None:
     path = tmp_path / "case.nc"
     load_case(folder, str(open_study(folder)["case_id"].values.ravel()[0])).to_netcdf(path)
     assert main(["report", str(path), "--out", str(tmp_path / "case.html"), "--title", "Case"]) == 0
@@ -269,7 +271,7 @@ def test_page_of_a_case_of_a_study(folder: Path, tmp_path: Path, capsys) -> None
         assert text in page.text, text
 
 
-def test_wrong_paths(tmp_path: Path, capsys) -> None:
+def test_invalid_path_raises(tmp_path: Path, capsys) -> None:
     with pytest.raises(InvalidInputError, match="no such file"):
         report.write(tmp_path / "nothing.nc")
     (tmp_path / "text.nc").write_text("no netCDF")
@@ -280,7 +282,7 @@ def test_wrong_paths(tmp_path: Path, capsys) -> None:
         report.write(xr.Dataset())
 
 
-WITHOUT = """
+SCRIPT_WITHOUT_DISTRIBUTED = """
 import sys
 from contactstudy.report import html
 assert "data:image" in html(sys.argv[1])
@@ -289,9 +291,9 @@ assert "distributed" not in sys.modules
 
 
 @pytest.mark.system
-def test_report_without_distributed(tmp_path: Path) -> None:
+def test_report_imports_no_distributed(tmp_path: Path) -> None:
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
-    subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
+    subprocess.run([sys.executable, "-c", SCRIPT_WITHOUT_DISTRIBUTED, str(tmp_path)], check=True)
 
 
 def test_page_suffix_is_checked(tmp_path: Path) -> None:
@@ -299,9 +301,9 @@ def test_page_suffix_is_checked(tmp_path: Path) -> None:
         report.write(xr.Dataset(), tmp_path / "x.pdf")
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
-    assert "The figure's title contains the value of coefficient of friction and roller profile" in page.text
+@pytest.mark.usefixtures("skip_encoding")
+def test_selected_values_determine_figure(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
+    assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     selected_titles = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *selected_titles]) == 0
@@ -314,7 +316,7 @@ def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) 
     assert "NAME=VALUE" in capsys.readouterr().err
 
 
-def test_selection_of_a_case(case_result: xr.Dataset) -> None:
+def test_selection_for_single_case_raises(case_result: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="selection"):
         report.html(case_result, selection={"friction": 0.1})
 
@@ -331,25 +333,28 @@ def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     assert len(set(loaded_cases)) == 2  # two of four solved cases over e/a
 
 
-@pytest.mark.usefixtures("without_encoding")
-def test_rolling_case(case_result: xr.Dataset) -> None:
+@pytest.mark.usefixtures("skip_encoding")
+def test_page_of_rolling_case_contains_stick_and_slip(case_result: xr.Dataset) -> None:
     in_contact = (case_result["pressure"] > 0).drop_attrs()
-    sticking = in_contact & (in_contact["y"] > 0)
+    is_sticking = in_contact & (in_contact["y"] > 0)
     tractions = {"traction_x": 0.0, "traction_y": 4e7, "slip_x": 0.0, "slip_y": 2e-3}
     standing_result = case_result[["pressure"]]
     rolling_result = standing_result.assign(
-        {name: value * in_contact for name, value in tractions.items()} | {"stick": sticking}
+        {name: value * in_contact for name, value in tractions.items()} | {"stick": is_sticking}
     )
-    still_page, page = Page(report.html(standing_result)), Page(report.html(rolling_result.assign(sticking_part=0.5)))
-    assert len(page.fetched) == len(still_page.fetched) + 2
+    page_without_motion, page = (
+        Page(report.html(standing_result)),
+        Page(report.html(rolling_result.assign(sticking_part=0.5))),
+    )
+    assert len(page.fetched) == len(page_without_motion.fetched) + 2
     for text in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
         assert text in page.text
-        assert text not in still_page.text
-    assert "slip everywhere" in Page(report.html(rolling_result.assign(stick=0 * sticking))).text
+        assert text not in page_without_motion.text
+    assert "slip everywhere" in Page(report.html(rolling_result.assign(stick=0 * is_sticking))).text
     assert "stick everywhere" in Page(report.html(rolling_result.assign(stick=in_contact))).text
 
 
-MALFORMED = (
+MALFORMED_ATTRIBUTES = (
     {"seconds": "many"},
     {"seconds": None, "stages": {"contact": "long"}},
     {"stages": [1], "time": "yesterday"},
@@ -360,8 +365,10 @@ MALFORMED = (
 MALFORMED_SETTINGS = ({"cells": "given"}, {"cells": "given", "tolerance": "x", "accuracy": []}, 5, 5)
 
 
-@pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED, MALFORMED_SETTINGS, strict=True)])
-def test_malformed_run_and_settings(case_result: xr.Dataset, run: dict[str, object], settings: object) -> None:
+@pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED_ATTRIBUTES, MALFORMED_SETTINGS, strict=True)])
+def test_page_ignores_malformed_run_and_settings(
+    case_result: xr.Dataset, run: dict[str, object], settings: object
+) -> None:
     attributes = {"contactstudy_run": run, "contactstudy_inputs": {"settings": settings}}
     changed_attributes = {
         name: json.dumps(json.loads(case_result.attrs[name]) | entries) for name, entries in attributes.items()
@@ -372,7 +379,7 @@ def test_malformed_run_and_settings(case_result: xr.Dataset, run: dict[str, obje
     assert "Numbers" in page
 
 
-@pytest.mark.usefixtures("without_encoding")
+@pytest.mark.usefixtures("skip_encoding")
 def test_page_omits_nan_numbers(case_result: xr.Dataset) -> None:
     scalars = {str(name): np.nan for name, variable in case_result.data_vars.items() if variable.ndim == 0}
     assert "not known" in report.html(case_result.assign(scalars))

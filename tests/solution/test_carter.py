@@ -20,7 +20,7 @@ from contactstudy.solution import contact_on_cells
 
 @pytest.mark.parametrize(
     ("friction", "force_fraction"),
-    [(0.3, 0.25), *(pytest.param(*pair, marks=pytest.mark.slow) for pair in [(0.5, 0.8), (1.0, 0.5)])],
+    [(0.3, 0.25), *(pytest.param(*parameters, marks=pytest.mark.slow) for parameters in [(0.5, 0.8), (1.0, 0.5)])],
 )
 def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
     result = check_stress_maximum(friction, force_fraction, max_error=0.03)
@@ -31,8 +31,11 @@ def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: fl
     ("friction", "force_fraction", "max_error"),
     [(1.0, 0.95, 0.08), (0.7, 0.93, 0.08), (0.3, 0.14, 0.08), (0.5, 0.05, 0.15)],
 )
-def test_stress_maximum_at_border_near_rim(friction: float, force_fraction: float, max_error: float) -> None:
-    """The cusp lies at most two cells inside the rim; its stress is between samples, or hidden in a narrow zone."""
+def test_stress_maximum_at_border_near_rim_is_accurate(
+    friction: float, force_fraction: float, max_error: float
+) -> None:
+    """The cusp lies at most two cells inside the rim; its stress is between samples or in a zone narrower than a
+    cell."""
     check_stress_maximum(friction, force_fraction, max_error)
 
 
@@ -43,7 +46,7 @@ def check_stress_maximum(friction: float, force_fraction: float, max_error: floa
     return comparison.result
 
 
-def test_stress_maximum_at_border_below_rigid_roller() -> None:
+def test_stress_maximum_below_rigid_roller_equals_finer_rows() -> None:
     """Under unlike bodies the pressure strains the sticking cells; cells four times finer along y are the reference."""
     roller = cs.Roller(radius=RADIUS, length=0.3e-3, profile=cs.profiles.Ellipsoid(crown_radius=20e-3), ends="none")
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.4)
@@ -54,7 +57,7 @@ def test_stress_maximum_at_border_below_rigid_roller() -> None:
     assert abs(comparison.change) < 0.01
 
 
-def test_stress_maximum_in_narrow_slip_strip() -> None:
+def test_stress_maximum_in_narrow_slip_strip_equals_finer_cells() -> None:
     """On 6 columns the border is at most two cells off the rim along x and y; the reference is on finer cells."""
     profile = cs.profiles.Ellipsoid(crown_radius=1.5e-3)
     roller = cs.Roller(radius=RADIUS, length=0.2e-3, profile=profile, material=STEEL, ends="none")
@@ -64,27 +67,27 @@ def test_stress_maximum_in_narrow_slip_strip() -> None:
     motion = cs.Rolling(**{name: value * half_width / RADIUS for name, value in creepages.items()})
     x_range = (0.1e-3 - 0.81 * half_width, 0.1e-3 + 0.81 * half_width)
     y_range = (-1.66 * half_width, 1.66 * half_width)
-    coarse, fine = (
-        largest_stress(
+    coarse_maximum, fine_maximum = (
+        find_stress_maximum_on_cells(
             replace(case, motion=motion),
             cs.Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y),
         )
         for cells_x, cells_y in ((8, 32), (32, 96))
     )
-    assert coarse.position[2] == 0.0
-    assert abs(coarse.value - fine.value) < coarse.error < 0.1 * fine.value
+    assert coarse_maximum.position[2] == 0.0
+    assert abs(coarse_maximum.value - fine_maximum.value) < coarse_maximum.error < 0.1 * fine_maximum.value
 
 
-def largest_stress(case: cs.Case, grid: cs.Grid) -> StressMaximum:
+def find_stress_maximum_on_cells(case: cs.Case, grid: cs.Grid) -> StressMaximum:
     """Largest von Mises stress on given cells with its error, which results on given cells do not have."""
     solution = contact_on_cells(case, grid, None, 1e-6)
     loads, pressure = solution.tractions.loads, solution.contact.pressure
 
-    def stress_at(points: Points) -> FloatArray:
+    def compute_stress(points: Points) -> FloatArray:
         return stresses_at(case.body, loads, grid, [points], pressure)[0]
 
     search = place_search(case.body, loads, grid, case.roller.material)
-    return find_stress_maximum(search, [stress_at(points) for points in search.samples], stress_at)
+    return find_stress_maximum(search, [compute_stress(points) for points in search.samples], compute_stress)
 
 
 def test_command_compares_with_carter(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""The whole case in one Dataset."""
+"""Result of `solve`."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def result():
 
 
 def test_result_contains_documented_variables_with_units(result) -> None:
-    promised = (
+    documented_names = (
         *("pressure", "traction_y", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
         *(
             "hertz_half_width",
@@ -64,8 +64,8 @@ def test_result_contains_documented_variables_with_units(result) -> None:
         *(f"peak_von_mises_{axis}" for axis in "xyz"),
         *(f"peak_edge_tension_{axis}" for axis in "xy"),
     )
-    assert set(promised) == set(result.data_vars)
-    for name in promised:
+    assert set(documented_names) == set(result.data_vars)
+    for name in documented_names:
         variable_specification = specification(name)
         assert variable_specification is not None
         assert tuple(dim.removesuffix("_field") for dim in result[name].dims) == variable_specification.dims, name
@@ -83,22 +83,26 @@ def test_certificate_is_within_tolerance(result) -> None:
 
 
 def test_normal_stress_on_top_equals_pressure(result) -> None:
-    top = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
-    away = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure curves within a cell
+    surface_stresses = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
+    is_inner = (
+        surface_stresses["pressure"].values > 0.75e9
+    )  # nearer to the contact's border the pressure curves within a cell
     for stress, load, bound in (("sigma_zz", "pressure", 1.5e-2), ("tau_yz", "traction_y", 1.5e-3)):
-        assert np.abs(top[stress].values + top[load].values)[away].max() < bound * 1.5e9, stress
+        assert (
+            np.abs(surface_stresses[stress].values + surface_stresses[load].values)[is_inner].max() < bound * 1.5e9
+        ), stress
 
 
 def test_result_survives_netcdf(result, tmp_path) -> None:
     import xarray as xr
 
     result.to_netcdf(tmp_path / "case.nc")
-    with xr.open_dataset(tmp_path / "case.nc") as repeated:
+    with xr.open_dataset(tmp_path / "case.nc") as stored_result:
         for name in STRESSES:
-            assert np.array_equal(repeated[name], result[name])
+            assert np.array_equal(stored_result[name], result[name])
 
 
-def test_stresses_at_given_positions(result) -> None:
+def test_stresses_have_given_positions_and_zero_end_stress(result) -> None:
     assert result["von_mises"].dims == ("x_field", "y_field", "z")
     assert result["x_field"].values.tolist() == [0.0, 0.3e-3]
     assert abs(result["sigma_xx"].values[0, 0, 1]) < 1e-5 * CASE.hertz_max_pressure  # the residual on the free end
@@ -125,8 +129,8 @@ def test_grid_beside_roller_raises_error() -> None:
     ],
 )
 def test_short_contact_has_sufficient_window(body) -> None:
-    strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
-    case = Case(body=body, roller=strongly_crowned, load=400.0)
+    crowned_roller = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
+    case = Case(body=body, roller=crowned_roller, load=400.0)
     with pytest.raises(WindowError, match="choose_grid"):
         solve(case, choose_grid(case), stresses=False)
     computed = solve(case, stresses=False)
@@ -142,9 +146,9 @@ def test_rough_surface_determines_window() -> None:
         load=400.0,
     )
     grid = choose_grid(case)
-    smooth = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    flat_heights = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     with pytest.raises(WindowError, match="choose_grid"):
-        solve(case, stresses=False, roughness=smooth)
+        solve(case, stresses=False, roughness=flat_heights)
 
 
 @pytest.mark.slow
@@ -159,17 +163,17 @@ def test_rolling_case_stresses_include_tractions() -> None:
     result = solve(case, grid, z=[0.0, 5e-5])
     assert result.converged
     assert 0 < int(result.stick.sum()) < int((result.pressure > 0).sum())
-    top = result.isel(z=0)
-    inner = {"x": slice(2, -2)}
+    surface_stresses = result.isel(z=0)
+    inner_cells = {"x": slice(2, -2)}
     peak = float(result.pressure.max())
     for stress, load in (("tau_yz", "traction_y"), ("tau_xz", "traction_x"), ("sigma_zz", "pressure")):
-        assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
+        assert float(np.abs(surface_stresses[stress] + result[load]).isel(inner_cells).max()) < 2e-2 * peak, stress
     assert float(result.end_traction_residual) < 2e-4
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
     roller_stresses = roller_stress(case, result.pressure, z=[5e-5], **tractions)
     reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
-    variant = solve(reversed_case, grid, z=[5e-5])
-    assert np.allclose(roller_stresses.von_mises.values, variant.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    reversed_result = solve(reversed_case, grid, z=[5e-5])
+    assert np.allclose(roller_stresses.von_mises.values, reversed_result.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
     with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
         roller_stress(case, result.pressure, z=[5e-5])
 

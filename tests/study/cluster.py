@@ -21,16 +21,16 @@ WORKER = "dask worker --nthreads 1 --memory-limit 0 --no-dashboard --scheduler-f
 
 
 class Cluster(str):
-    """Address of a scheduler, with its processes: the scheduler's is the first."""
+    """Address of a scheduler, with the processes of the cluster; the first one is the scheduler."""
 
     processes: list[subprocess.Popen[bytes]]
 
 
 @contextlib.contextmanager
-def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluster]:
+def cluster(folder: Path, workers: int = 2, *, outdated_workers: int = 0) -> Iterator[Cluster]:
     """Start a scheduler and workers with `folder` as their working folder; yield the scheduler's address.
 
-    Lame workers have version 0.0.0 of the package.
+    Outdated workers have version 0.0.0 of the package.
     """
     metadata = folder / "lame" / "contactstudy-0.0.0.dist-info" / "METADATA"
     metadata.parent.mkdir(parents=True, exist_ok=True)
@@ -47,9 +47,9 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
         )
 
     processes = [start(SCHEDULER, ROOT), *(start(WORKER, ROOT) for _ in range(workers))]
-    processes += [start(WORKER, folder / "lame") for _ in range(lame)]
+    processes += [start(WORKER, folder / "lame") for _ in range(outdated_workers)]
     try:
-        address = Cluster(_address(folder / "scheduler.json"))
+        address = Cluster(_read_address(folder / "scheduler.json"))
         address.processes = processes
         yield address
     finally:
@@ -64,11 +64,11 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
             process.wait()
 
 
-def _address(file: Path) -> str:
+def _read_address(file: Path) -> str:
     """Address in a scheduler's file, which is absent or incomplete until the scheduler has started."""
-    end = time.monotonic() + 300
+    deadline = time.monotonic() + 300
     while True:
         with contextlib.suppress(FileNotFoundError, json.JSONDecodeError):
             return str(json.loads(file.read_text())["address"])
-        assert time.monotonic() < end, "the scheduler did not start"
+        assert time.monotonic() < deadline, "the scheduler did not start"
         time.sleep(0.05)

@@ -1,4 +1,4 @@
-"""Small studies for all tests of the study layer."""
+"""Small studies of the tests of the study layer."""
 
 from __future__ import annotations
 
@@ -14,27 +14,29 @@ from contactstudy.study import Study
 from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.plan import PlannedCase
-from tests.small_study import as_toml, small_study
+from tests.small_study import format_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
 
 ROOT = Path(__file__).parents[2]
 
 
-def tickets_of(folder: Path) -> Path:
+def locate_tickets(folder: Path) -> Path:
     """Folder of the tickets of a run that writes to `folder`."""
     return folder.with_name(f"{folder.name}-tickets")
 
 
-def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Sequence[str] = ()) -> subprocess.Popen[str]:
-    """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others.
+def start_run(
+    study: Path, folder: Path, *options: str, tickets: int, prefix: Sequence[str] = ()
+) -> subprocess.Popen[str]:
+    """Start the command in a new process group; the stand-in solver solves `tickets` cases and then waits.
 
-    `within` is a command that runs another one, such as one in a container.
+    `prefix` precedes the command, for example a command of a container.
     """
-    initial_tickets = tickets_of(folder)
+    initial_tickets = locate_tickets(folder)
     give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
-        [*within, *command, *more],
+        [*prefix, *command, *options],
         cwd=ROOT,
         start_new_session=True,
         text=True,
@@ -49,7 +51,7 @@ def count_finished(folder: Path) -> int:
     return len(Folder(folder).results().cases)
 
 
-def intact(folder: Path) -> bool:
+def has_intact_batches(folder: Path) -> bool:
     """Whether every batch of a folder has its checksum."""
     return not any(find_damage(path) for path in batch_paths(folder / "batches"))
 
@@ -62,12 +64,12 @@ def study() -> Study:
 @pytest.fixture
 def study_file(tmp_path: Path) -> Path:
     path = tmp_path / "small.toml"
-    path.write_text(as_toml(small_study()))
+    path.write_text(format_toml(small_study()))
     return path
 
 
-def planned_case(index, parameters=None):
-    """Case of a plan that is not set up."""
+def make_planned_case(index, parameters=None):
+    """A planned case outside a plan."""
     return PlannedCase(
         index=index,
         id=f"{index:064x}",

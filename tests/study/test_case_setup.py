@@ -10,14 +10,14 @@ from contactstudy.study.parameters import add_default_accuracy, identity_value
 from tests.small_study import BASE
 
 
-def test_roller_length_fixes_the_roller():
+def test_roller_length_determines_roller():
     case = build_setup(BASE | {"e_over_a": 2}).case
     assert case.roller.length == pytest.approx(0.5e-3)
     assert case.body.length == pytest.approx(0.5e-3 + 4 * case.hertz_half_width)
     assert case.roller_start == pytest.approx(2 * case.hertz_half_width)
 
 
-def test_gamma_fixes_the_body():
+def test_gamma_determines_body_length():
     values = {key: value for key, value in BASE.items() if key != "roller_length"}
     case = build_setup(values | {"gamma": 0.2, "e_over_a": 2}).case
     assert case.body.length == pytest.approx(1e-3)
@@ -34,7 +34,7 @@ def test_half_space_keeps_roller_and_coordinates():
 
 @pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])
 @pytest.mark.parametrize("parameters", [{"gamma": 0.5}, {"roller_length": 2e-3}])
-def test_load_and_e_over_a_together(parameters, e_over_a):
+def test_end_distance_follows_from_load_and_e_over_a(parameters, e_over_a):
     values = {key: BASE[key] for key in ("young", "poisson", "radius")} | parameters
     case = build_setup(values | {"load": 300.0, "e_over_a": e_over_a}).case
     assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
@@ -46,14 +46,14 @@ def test_load_without_positive_roller_length_raises():
         build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
 
 
-AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_length")} | {
+BASE_AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_length")} | {
     "approach": 1e-6,
     "accuracy": 0.01,
 }
 
 
 def test_approach_leaves_half_width_undefined():
-    setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
+    setup = build_setup(BASE_AT_APPROACH | {"end_distance": 1e-4})
     assert setup.case.approach == 1e-6
     assert np.isnan(setup.e_over_a)
 
@@ -70,7 +70,7 @@ def test_approach_leaves_half_width_undefined():
 )
 def test_approach_refuses_parameters_over_half_width(changes, message):
     with pytest.raises(InvalidInputError, match=message):
-        build_setup(AT_APPROACH | changes)
+        build_setup(BASE_AT_APPROACH | changes)
 
 
 def test_stress_points_are_over_a():
@@ -101,7 +101,7 @@ def test_impossible_parameters_raise(changes, message):
         build_setup(BASE | changes)
 
 
-def test_lundberg_profile_from_design_pressure():
+def test_amplitude_of_lundberg_profile_follows_from_design_pressure():
     table = {"kind": "lundberg", "design_pressure": 1.5e9}
     case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
@@ -136,10 +136,10 @@ def test_identity_contains_default_accuracy():
     assert add_default_accuracy({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
     assert add_default_accuracy({"cells_x": 4.0}) == {"cells_x": 4.0}
     assert identity_value("friction", 0.0) is None
-    tapered = {"kind": "tapered", "half_angle": 0.1}
-    assert identity_value("profile", tapered | {"name": "ours"}) == tapered
+    profile_table = {"kind": "tapered", "half_angle": 0.1}
+    assert identity_value("profile", profile_table | {"name": "ours"}) == profile_table
 
 
-def test_shift_motion_from_parameters():
+def test_motion_parameters_make_shift():
     values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
     assert build_motion(values) == Shift(y=1e-6)

@@ -1,4 +1,4 @@
-"""Studies of motions: parameters, rejected parameters, and results independent of the run."""
+"""Studies of motions: parameters, invalid parameters, and results independent of the run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from contactstudy.study import Study, load_case, open_study, run_study
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.common_cells import resample
 from tests.small_study import BASE, case_id, small_study
-from tests.study.test_common_cells import cells_map
+from tests.study.test_common_cells import make_resampling
 
 ROLLS: dict[str, Any] = {
     "young": 210e9,
@@ -52,7 +52,7 @@ def rolling_study(**changes: Any) -> Study:
         ({"motion": "rolling", "rolling_model": "fastsim"}, Rolling(model="fastsim")),
     ],
 )
-def test_motion_from_parameters(parameters: dict[str, Any], expected: object) -> None:
+def test_parameters_determine_motion(parameters: dict[str, Any], expected: object) -> None:
     assert build_setup(BASE | {"e_over_a": 0.0} | parameters).case.motion == expected
 
 
@@ -75,15 +75,23 @@ def test_parameter_of_other_motion_raises(parameters: dict[str, Any], message: s
         build_setup(BASE | {"e_over_a": 0.0} | parameters)
 
 
-def test_a_study_lists_impossible_motions_as_skipped() -> None:
+def test_impossible_motions_are_skipped() -> None:
     study = small_study(sweep={"e_over_a": [0.0], "motion": ["sliding", "rolling"], "spin": [1.0]})
     assert [bool(case.reason) for case in study.plan()] == [True, False]
 
 
 def test_identity_contains_motion_without_defaults() -> None:
     assert case_id({"friction": 0.1, "motion": "sliding", "rolling_model": "exact"}) == case_id({"friction": 0.1})
-    rolling = {"friction": 0.1, "motion": "rolling"}
-    assert len({case_id(rolling | more) for more in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})}) == 4
+    rolling_parameters = {"friction": 0.1, "motion": "rolling"}
+    assert (
+        len(
+            {
+                case_id(rolling_parameters | motion_parameters)
+                for motion_parameters in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})
+            }
+        )
+        == 4
+    )
 
 
 @pytest.fixture(scope="module")
@@ -97,8 +105,8 @@ def rolling_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_motion_results_equal_solver_results(rolling_folder: Path) -> None:
     study = rolling_study()
     dataset = open_study(rolling_folder)
-    first, *_, last = study.plan()
-    for case in (first, last):
+    first_case, *_, last_case = study.plan()
+    for case in (first_case, last_case):
         setup = build_setup(case.parameters)
         separate_result = solve(setup.case, setup.grid, **setup.options)
         stored_case = load_case(rolling_folder, case.id)
@@ -121,18 +129,21 @@ def test_motion_results_equal_solver_results(rolling_folder: Path) -> None:
 
 
 def test_resumed_motion_study_is_bit_identical(rolling_folder: Path, tmp_path: Path) -> None:
-    first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
-    run_study(first, tmp_path / "parts", workers=0, progress=False)
+    partial_study, study = (
+        rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}),
+        rolling_study(),
+    )
+    run_study(partial_study, tmp_path / "parts", workers=0, progress=False)
     report = run_study(study, tmp_path / "parts", workers=0, progress=False)
     assert (report.solved, report.counts) == (3, {"ok": 4})
     for case in study.plan():
-        first_case, second_case = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolling_folder))
-        assert first_case.drop_vars("seconds").identical(
-            second_case.drop_vars("seconds").assign_attrs(first_case.attrs)
+        resumed_case, direct_case = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolling_folder))
+        assert resumed_case.drop_vars("seconds").identical(
+            direct_case.drop_vars("seconds").assign_attrs(resumed_case.attrs)
         )
 
 
-def test_flags_come_onto_common_cells_whole() -> None:
-    cells, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
-    stick = resample("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
+def test_flags_on_common_cells_are_zero_or_one() -> None:
+    cell_borders, common_borders = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
+    stick = resample("stick", np.array([True, False]), [make_resampling(cell_borders, common_borders, np.nan)])
     assert stick.tolist() == [1, 1, 0, 0, 0]

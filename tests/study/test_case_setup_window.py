@@ -1,4 +1,4 @@
-"""A study widens the window for a wide contact like `solve`."""
+"""For a wide contact, a study widens the window as `solve` does."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from contactstudy.study import load_case, run_study
 from contactstudy.study.case_setup import build_setup
 from tests.small_study import small_study
 
-WIDE = {
+WIDE_CONTACT = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
@@ -30,23 +30,23 @@ RIDGE |= {"profile": {"kind": "full-crown", "crown_radius": 5e-3}}  # wider than
 
 @pytest.mark.parametrize("changes", [{}, RIDGE])
 def test_default_window_is_widened(tmp_path, changes):
-    base = WIDE | changes
+    base = WIDE_CONTACT | changes
     study = small_study(base=base, sweep={})
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
     setup = build_setup(base)
-    first_case = setup.grid
+    first_grid = setup.grid
     separate_result = solve_in_first_window(
         create_widening_grids(setup.case, **setup.cells), lambda grid: solve(setup.case, grid, stresses=False)
     )
     stored_case = load_case(tmp_path, study.plan()[0].id)
-    assert separate_result.sizes["y"] > first_case.cells_y
+    assert separate_result.sizes["y"] > first_grid.cells_y
     np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])
     assert stored_case.sizes["y"] == separate_result.sizes["y"]
 
 
 def test_narrow_explicit_window_raises(tmp_path):
-    report = run_study(small_study(base=WIDE | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
+    report = run_study(small_study(base=WIDE_CONTACT | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
     (failure,) = report.failures
     assert failure[1].startswith("WindowError")
 

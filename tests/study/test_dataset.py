@@ -47,21 +47,23 @@ def test_dataset_contains_status_of_cases(study_dataset):
 def test_fields_are_lazy(study_dataset, folder):
     for name in ("pressure", "von_mises"):
         assert not study_dataset[name].variable._in_memory
-    chunked = open_study(folder, chunks={})
-    assert dask.is_dask_collection(chunked["pressure"].data)
-    assert float(chunked["pressure"].max()) == float(study_dataset["pressure"].max()) > 0
+    chunked_dataset = open_study(folder, chunks={})
+    assert dask.is_dask_collection(chunked_dataset["pressure"].data)
+    assert float(chunked_dataset["pressure"].max()) == float(study_dataset["pressure"].max()) > 0
     stored_case = load_case(folder, identity(e_over_a=1))
     first_case = open_study(folder, cells="original").sel(e_over_a=1, friction=0, profile="sharp")
-    size = stored_case.sizes["x"]
-    np.testing.assert_array_equal(first_case["pressure"].values[:size], stored_case["pressure"])
-    assert np.isnan(first_case["pressure"].values[size:]).all()
-    np.testing.assert_array_equal(first_case["x"].values[:size], stored_case["x"])
+    cell_count = stored_case.sizes["x"]
+    np.testing.assert_array_equal(first_case["pressure"].values[:cell_count], stored_case["pressure"])
+    assert np.isnan(first_case["pressure"].values[cell_count:]).all()
+    np.testing.assert_array_equal(first_case["x"].values[:cell_count], stored_case["x"])
     np.testing.assert_allclose(first_case["x_over_a"] * first_case["hertz_half_width"], first_case["x"])
 
 
 def test_different_stress_points_share_common_axis(tmp_path):
     base = {name: value for name, value in BASE.items() if name != "field_x_over_a"}
-    cases = [{"e_over_a": e, "field_x_over_a": [0.0, 0.5 + e, 2.0, 4.0]} for e in (0.0, 1.0)]
+    cases = [
+        {"e_over_a": end_distance, "field_x_over_a": [0.0, 0.5 + end_distance, 2.0, 4.0]} for end_distance in (0.0, 1.0)
+    ]
     run_study(small_study(base=base, sweep={}, cases=cases), tmp_path, workers=0, solver=solve_fake)
     study_dataset = open_study(tmp_path)
     assert study_dataset["von_mises"].dims[-3:] == ("x_over_a", "y_field_over_a", "z_over_a")
@@ -71,13 +73,13 @@ def test_different_stress_points_share_common_axis(tmp_path):
     for index, e_over_a in enumerate((0.0, 1.0)):
         stored_case = load_case(tmp_path, str(study_dataset["case_id"].values.ravel()[index]))
         case_field = study_dataset["von_mises"].isel(dict.fromkeys(study_dataset["status"].dims, index))
-        at_points = case_field.sel(x_over_a=[0.0, 0.5 + e_over_a, 2.0, 4.0], method="nearest")
-        np.testing.assert_allclose(at_points, stored_case["von_mises"], rtol=1e-6)
-        load = (study_dataset["pressure"] * study_dataset["x_width"]).isel(
+        common_stress = case_field.sel(x_over_a=[0.0, 0.5 + e_over_a, 2.0, 4.0], method="nearest")
+        np.testing.assert_allclose(common_stress, stored_case["von_mises"], rtol=1e-6)
+        line_loads = (study_dataset["pressure"] * study_dataset["x_width"]).isel(
             dict.fromkeys(study_dataset["status"].dims, index)
         )
-        exact = (stored_case["pressure"].sum("x") * np.diff(stored_case["x"])[0]).sum()
-        assert float(load.sum()) == pytest.approx(float(exact), rel=1e-9)
+        expected_load = (stored_case["pressure"].sum("x") * np.diff(stored_case["x"])[0]).sum()
+        assert float(line_loads.sum()) == pytest.approx(float(expected_load), rel=1e-9)
     mesh = case_field.plot(x="x_over_a", y="z_over_a")
     assert mesh.get_array().size
     assert "x_field_index" in open_study(tmp_path, cells="original").dims
@@ -92,7 +94,7 @@ def test_positions_over_a_are_common(tmp_path):
     assert study_dataset["z_over_a"].dims == ("z_over_a",)
 
 
-def test_open_study_without_sweep(tmp_path):
+def test_study_without_sweep_has_case_dimension(tmp_path):
     run_study(small_study(sweep={}, base=BASE | {"e_over_a": 1}), tmp_path, workers=0, solver=solve_fake)
     study_dataset = open_study(tmp_path)
     assert study_dataset["pressure"].isel(case=0).max() > 0
@@ -106,7 +108,7 @@ def test_swept_load_is_dimension_only(tmp_path):
     assert study_dataset["load"].values.tolist() == [50, 100]
 
 
-def test_an_unfinished_study_opens(tmp_path):
+def test_unfinished_study_has_missing_cases(tmp_path):
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake, sample=3)
     study_dataset = open_study(tmp_path)
     assert study_dataset["status"].values.tolist() == [["ok", "ok"], ["missing", "ok"]]
@@ -122,7 +124,7 @@ def test_open_study_writes_no_files(tmp_path):
     assert sorted(tmp_path.rglob("*")) == initial_paths
 
 
-def test_intensities_with_different_exponents(tmp_path):
+def test_intensity_of_different_exponents_has_no_units(tmp_path):
     sweep = {"roller_body": ["rigid", "finite-length"]}
     base = BASE | {"body": "half-space", "stresses": False, "accuracy": 0.1, "cells_x": None, "cells_y": None}
     base |= {"e_over_a": 3.0}
@@ -135,48 +137,48 @@ def test_intensities_with_different_exponents(tmp_path):
     assert "end_exponent" in study_dataset["end_intensity"].attrs["comment"]
 
 
-def test_corners_of_each_case(tmp_path):
-    """Columns of the law at a corner; a case without a corner has none."""
+def test_dataset_contains_corners(tmp_path):
+    """Variables of the law at a corner; they are NaN for a case without a corner."""
     profiles = [{"kind": "chamfer", "width": 0.1e-3, "angle": angle} for angle in (0.02, 0.04)]
     base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
     base |= {"body": "half-space", "stresses": False, "accuracy": 0.1, "e_over_a": 3.0}
     study = small_study(base=base, sweep={"profile": [*profiles, "cylinder"]}, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 3}
-    opened = open_study(tmp_path)
+    dataset = open_study(tmp_path)
     modulus = 210e9 / (1 - 0.3**2)
-    np.testing.assert_allclose(opened.corner_slope, np.tan([0.02, 0.04, np.nan]))
-    np.testing.assert_allclose(opened.corner_intensity, modulus * opened.corner_slope / (2 * np.pi))
-    middle = 3 * opened.hertz_half_width + 0.25e-3
-    np.testing.assert_allclose(np.abs(opened.corner_x - middle), [0.15e-3, 0.15e-3, np.nan])
-    assert (opened.corner_distance_error < 0.3 * opened.corner_distance).values.tolist() == [True, True, False]
-    assert opened.corner_distance.attrs["units"] == "m"
+    np.testing.assert_allclose(dataset.corner_slope, np.tan([0.02, 0.04, np.nan]))
+    np.testing.assert_allclose(dataset.corner_intensity, modulus * dataset.corner_slope / (2 * np.pi))
+    centre = 3 * dataset.hertz_half_width + 0.25e-3
+    np.testing.assert_allclose(np.abs(dataset.corner_x - centre), [0.15e-3, 0.15e-3, np.nan])
+    assert (dataset.corner_distance_error < 0.3 * dataset.corner_distance).values.tolist() == [True, True, False]
+    assert dataset.corner_distance.attrs["units"] == "m"
 
 
-def test_reference_depth_of_each_case(tmp_path):
-    """Tables of a study show the depths to which approach and tilt of each case refer."""
+def test_dataset_contains_reference_depths(tmp_path):
+    """Tables of a study contain the reference depths of approach and tilt of each case."""
     base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
     base |= {"e_over_a": 1.0, "stresses": False, "accuracy": 0.1, "roller_body": "finite-length", "tilt": 1e-4}
     del base["roller_length"]
     lengths = [0.3e-3, 0.5e-3]
     study = small_study(base=base, sweep={"roller_length": lengths}, level="surface")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
-    opened = open_study(tmp_path)
-    np.testing.assert_allclose(opened.reference_depth, lengths + 2 * opened.hertz_half_width)
-    np.testing.assert_allclose(opened.roller_reference_depth, lengths)
-    assert "reference_depth" in opened.approach.attrs["long_name"]
-    assert summary(opened.isel(roller_length=0))["roller_reference_depth"].text == "0.3 mm"
+    dataset = open_study(tmp_path)
+    np.testing.assert_allclose(dataset.reference_depth, lengths + 2 * dataset.hertz_half_width)
+    np.testing.assert_allclose(dataset.roller_reference_depth, lengths)
+    assert "reference_depth" in dataset.approach.attrs["long_name"]
+    assert summary(dataset.isel(roller_length=0))["roller_reference_depth"].text == "0.3 mm"
     table = pd.read_csv(export_results(tmp_path))
     np.testing.assert_allclose(table["roller_reference_depth [m]"], lengths)
-    assert table["reference_depth [m]"].tolist() == opened.reference_depth.values.tolist()
+    assert table["reference_depth [m]"].tolist() == dataset.reference_depth.values.tolist()
 
 
 def test_swept_reference_depth_is_the_dimension(tmp_path):
     base = {name: value for name, value in BASE.items() if not name.startswith(("field_", "cells_"))}
     base |= {"body": "half-space", "e_over_a": 1.0, "stresses": False, "accuracy": 0.1}
     run_study(small_study(base=base, sweep={"reference_depth": [1e-3, 2e-3]}), tmp_path, workers=0)
-    opened = open_study(tmp_path)
-    assert opened.reference_depth.dims == ("reference_depth",)
-    assert summary(opened.isel(reference_depth=1))["reference_depth"].text == "2 mm"
+    dataset = open_study(tmp_path)
+    assert dataset.reference_depth.dims == ("reference_depth",)
+    assert summary(dataset.isel(reference_depth=1))["reference_depth"].text == "2 mm"
 
 
 def test_collect_keeps_summaries_only(folder):

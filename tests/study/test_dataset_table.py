@@ -1,4 +1,4 @@
-"""A table of parameters is a study, and so is a part of an opened study."""
+"""Studies from tables of parameters and from opened studies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.small_study import BASE, small_study
 from tests.stand_in_solver import solve_fake
 
 
-def ids(study: Study) -> list[str]:
+def list_ids(study: Study) -> list[str]:
     return [case.id for case in study.plan()]
 
 
@@ -23,15 +23,15 @@ def test_table_of_coordinates_is_product() -> None:
     assert study == small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
 
 
-def test_rows_are_listed_cases() -> None:
+def test_table_of_rows_makes_listed_cases() -> None:
     frame = pd.DataFrame({"e_over_a": [0.0, 1.0, 1.0], "friction": [0.0, 0.0, 0.1], "body": "half-space"})
     study = Study.from_dataset(frame.rename_axis("case").to_xarray(), "rows", base=BASE)
     columns = {"e_over_a": [0.0, 1.0, 1.0], "friction": [0.0, 0.0, 0.1], "body": 3 * ["half-space"]}
-    assert ids(study) == ids(small_study(sweep={}, zip=columns))
+    assert list_ids(study) == list_ids(small_study(sweep={}, zip=columns))
     assert study.name == "rows"
 
 
-def test_shared_numbers_units_words_and_profiles() -> None:
+def test_table_may_contain_units_and_profiles() -> None:
     crown = profiles.FullCrown(1.0)
     table = xr.Dataset(
         {
@@ -47,7 +47,7 @@ def test_shared_numbers_units_words_and_profiles() -> None:
         sweep={"tilt": [0.0, 0.2e-3]},
         zip={"profile": [crown, {"kind": "cylinder", "name": "sharp"}], "coupled": [True, False]},
     )
-    assert ids(study) == ids(expected)
+    assert list_ids(study) == list_ids(expected)
 
 
 def test_two_dimensional_table_makes_explicit_cases() -> None:
@@ -111,7 +111,7 @@ def test_study_from_opened_dataset_equals_study(study: Study, tmp_path) -> None:
     assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
 
 
-def test_study_from_selection_of_dataset(tmp_path) -> None:
+def test_study_from_selection_of_dataset_has_selected_values(tmp_path) -> None:
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
         zip={
@@ -127,9 +127,9 @@ def test_study_from_selection_of_dataset(tmp_path) -> None:
     assert finer_study.zip[0]["profile"][0]["name"] == "sharp"
     assert finer_study.base["cells_x"] == 8.0
     equal_study = Study.from_dataset(selection)
-    assert set(ids(equal_study)) == set(selection["case_id"].values.ravel())
+    assert set(list_ids(equal_study)) == set(selection["case_id"].values.ravel())
     listed_cases = dataset.stack(all=dataset["case_id"].dims).isel(all=[0, 3, 7])
-    assert set(ids(Study.from_dataset(listed_cases))) == set(listed_cases["case_id"].values)
+    assert set(list_ids(Study.from_dataset(listed_cases))) == set(listed_cases["case_id"].values)
     with pytest.raises(InvalidInputError, match="base = 'tilt': must be a parameter that is not swept"):
         Study.from_dataset(selection, base={"tilt": 0.0})
 

@@ -6,10 +6,10 @@ import pytest
 
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, StudyFileError
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 
 
-def ids(study):
+def list_ids(study):
     return [case.id for case in study.plan()]
 
 
@@ -24,9 +24,9 @@ def test_toml_equals_python_study(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "profile": ["cylinder"]})
     path = tmp_path / "small.toml"
     path.write_text(
-        as_toml(small_study(sweep={"e_over_a": [0, 1]})) + '[[sweep.profile]]\nname = "sharp"\nkind = "cylinder"\n'
+        format_toml(small_study(sweep={"e_over_a": [0, 1]})) + '[[sweep.profile]]\nname = "sharp"\nkind = "cylinder"\n'
     )
-    assert ids(Study.from_toml(path)) == ids(study)
+    assert list_ids(Study.from_toml(path)) == list_ids(study)
 
 
 def test_json_round_trip():
@@ -41,7 +41,7 @@ def test_json_round_trip():
     )
     restored_study = Study.from_mapping(json.loads(study.to_json()))
     assert restored_study.to_json() == study.to_json()
-    assert ids(restored_study) == ids(study)
+    assert list_ids(restored_study) == list_ids(study)
 
 
 def test_zip_makes_single_dimension():
@@ -56,13 +56,21 @@ def test_zip_without_distinct_values_is_numbered():
 
 
 def test_complete_explicit_cases_form_cube():
-    cases = [{"e_over_a": e, "friction": f} for e in (0, 1) for f in (0, 0.1)]
-    assert ids(small_study(sweep={}, cases=cases)) == ids(small_study())
+    cases = [{"e_over_a": end_distance, "friction": friction} for end_distance in (0, 1) for friction in (0, 0.1)]
+    assert list_ids(small_study(sweep={}, cases=cases)) == list_ids(small_study())
     assert small_study(sweep={}, cases=cases).plan().cube.dims == ("e_over_a", "friction")
 
 
 def test_sparse_explicit_cases_are_listed():
-    cases = [{"e_over_a": n, "friction": n / 10, "poisson": n / 20, "max_pressure": (1 + n) * 1e9} for n in range(5)]
+    cases = [
+        {
+            "e_over_a": case_index,
+            "friction": case_index / 10,
+            "poisson": case_index / 20,
+            "max_pressure": (1 + case_index) * 1e9,
+        }
+        for case_index in range(5)
+    ]
     cube = small_study(sweep={}, cases=cases).plan().cube
     assert cube.dims == ("case",)
     assert cube.labels["poisson"][0] == "case"
@@ -151,7 +159,7 @@ def test_unknown_file_key_raises(tmp_path):
         {"base": {"coupled": 1}},
     ],
 )
-def test_wrong_content(content):
+def test_invalid_content_raises(content):
     with pytest.raises(InvalidInputError):
         small_study(**({"name": "small"} | content))
 

@@ -1,4 +1,4 @@
-"""docs/reference/study_file.md: its study file is valid, its levels are complete; files named on pages exist."""
+"""docs/reference/study_file.md has a valid study file and all levels; files in docs/ pages exist."""
 
 import re
 import tomllib
@@ -8,16 +8,16 @@ from contactstudy.study.definition import KEYS
 from contactstudy.study.plan import LEVELS
 from tests.study.conftest import ROOT
 
-TEXT = (ROOT / "docs" / "reference" / "study_file.md").read_text()
+REFERENCE = (ROOT / "docs" / "reference" / "study_file.md").read_text()
 TUTORIAL = (ROOT / "docs" / "tutorial" / "first_study.md").read_text()
 
 
-def blocks(text, language):
+def list_code_blocks(text, language):
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
 def test_documented_example_is_study():
-    first_block, single_block, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
+    first_block, single_block, _ = (tomllib.loads(block) for block in list_code_blocks(REFERENCE, "toml"))
     assert {*first_block, *single_block} == set(KEYS)
     plan = Study.from_mapping(first_block).plan()
     assert (plan.cube.dims, len(plan), plan.skipped) == (("friction", "profile", "max_pressure"), 6, [])
@@ -26,15 +26,15 @@ def test_documented_example_is_study():
 
 def test_every_level_is_explained():
     for name in LEVELS:
-        assert f"| `{name}` |" in TEXT, name
+        assert f"| `{name}` |" in REFERENCE, name
 
 
 def test_tutorial_file_equals_python_study():
-    names = {}
-    source = blocks(TUTORIAL, "python")[0]
-    exec(source[: source.index("report =")], names)
-    from_file = Study.from_mapping(tomllib.loads(blocks(TUTORIAL, "toml")[0]))
-    assert [case.id for case in from_file.plan()] == [case.id for case in names["study"].plan()]
+    namespace = {}
+    source = list_code_blocks(TUTORIAL, "python")[0]
+    exec(source[: source.index("report =")], namespace)
+    file_study = Study.from_mapping(tomllib.loads(list_code_blocks(TUTORIAL, "toml")[0]))
+    assert [case.id for case in file_study.plan()] == [case.id for case in namespace["study"].plan()]
 
 
 def test_named_files_exist():

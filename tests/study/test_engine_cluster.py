@@ -1,4 +1,4 @@
-"""Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
+"""Runs on a scheduler and workers in separate processes; results are equal bit for bit."""
 
 import socket
 import time
@@ -11,17 +11,17 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study import StudyFileError, engine, load_case, open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
-from tests.small_study import BASE, as_toml, identity, small_study
+from tests.small_study import BASE, format_toml, identity, small_study
 from tests.stand_in_solver import DIES, HELD, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
-from tests.study.conftest import start_run, tickets_of
+from tests.study.conftest import locate_tickets, start_run
 
-SHORT = {"roller_length": 0.2e-3}  # solved in half of the time
-LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
+SHORT_ROLLER = {"roller_length": 0.2e-3}  # solved in half of the time
+LARGE_SWEEP = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
 def load_dataset(folder):
-    """All that a study holds except how long it took."""
+    """Dataset of a study without the duration of the cases."""
     return open_study(folder).drop_vars("seconds").load()
 
 
@@ -44,7 +44,7 @@ def test_missing_scheduler_is_announced_before_error(tmp_path, monkeypatch):
 
 
 def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
-    """Dask alone would wait without end for the rest of a greeting."""
+    """Dask would wait indefinitely for the end of the handshake."""
     monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.3, close_seconds=0.3))
     with socket.create_server(("127.0.0.1", 0)) as listener:
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
@@ -59,7 +59,7 @@ def test_invalid_scheduler_raises(tmp_path, scheduler):
 
 
 @pytest.mark.slow
-def test_no_worker_at_all(study, tmp_path):
+def test_cluster_without_worker_raises(study, tmp_path):
     with cluster(tmp_path, workers=0) as address, pytest.raises(StudyFileError, match="no worker is connected"):
         run_study(study, tmp_path / "out", scheduler=address, wait=1.0, solver=solve_fake)
     assert not Folder(tmp_path / "out").holders
@@ -68,29 +68,33 @@ def test_no_worker_at_all(study, tmp_path):
 @pytest.mark.slow
 def test_worker_version_mismatch_is_reported(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=0.0))
-    unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0")
-    with cluster(tmp_path, workers=0, lame=1) as address, unfit:
+    raises_version_error = pytest.raises(
+        StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0"
+    )
+    with cluster(tmp_path, workers=0, outdated_workers=1) as address, raises_version_error:
         run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
 
 
 @pytest.mark.slow
 def test_worker_of_wrong_version_is_excluded(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=100.0))  # workers start slowly on a busy machine
-    with cluster(tmp_path, workers=1, lame=1) as address:
+    with cluster(tmp_path, workers=1, outdated_workers=1) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 4}
 
 
 @pytest.mark.slow
 def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
-    monkeypatch.setenv(HELD, str(tickets_of(tmp_path / "out")))  # the workers are started here, and hold cases too
+    monkeypatch.setenv(HELD, str(locate_tickets(tmp_path / "out")))  # workers inherit the variable and wait for tickets
     file = tmp_path / "long.toml"
-    file.write_text(as_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]})))
+    file.write_text(
+        format_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]}))
+    )
     with cluster(tmp_path, workers=1) as address:
         process = start_run(file, tmp_path / "out", "--scheduler", address, tickets=2)
-        end = time.monotonic() + 200
+        deadline = time.monotonic() + 200
         while not list((tmp_path / "out").glob("batches/*.nc")):
-            assert time.monotonic() < end
+            assert time.monotonic() < deadline
             assert process.poll() is None, process.communicate()
             time.sleep(0.1)
         address.processes[0].kill()
@@ -103,30 +107,30 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 
 @pytest.mark.system
 def test_single_solution_equals_study_result(tmp_path):
-    """The former cases of a worker do not change a bit of the next one."""
-    run_study(small_study(base=BASE | SHORT), tmp_path / "all", workers=0)
-    single_case_study = small_study(base=BASE | SHORT, sweep={"e_over_a": [1.0], "friction": [0.1]})
+    """Earlier cases of a worker do not change a bit of a result."""
+    run_study(small_study(base=BASE | SHORT_ROLLER), tmp_path / "all", workers=0)
+    single_case_study = small_study(base=BASE | SHORT_ROLLER, sweep={"e_over_a": [1.0], "friction": [0.1]})
     run_study(single_case_study, tmp_path / "alone", workers=1)
-    studies = [
-        load_case(tmp_path / name, identity(**SHORT, e_over_a=1.0, friction=0.1)).drop_vars("seconds")
+    results = [
+        load_case(tmp_path / name, identity(**SHORT_ROLLER, e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
-    assert studies[0].equals(studies[1])
+    assert results[0].equals(results[1])
 
 
 @pytest.fixture(scope="module")
 def two_workers(tmp_path_factory):
-    """Address of a cluster with two workers, which several tests use."""
+    """Address of a shared cluster with two workers."""
     with cluster(tmp_path_factory.mktemp("cluster")) as address:
         yield address
 
 
 @pytest.mark.system
 def test_cluster_of_separate_processes(two_workers, tmp_path):
-    """By the scheduler's address, and by a client, which the run leaves open and gives bytes instead of cases."""
+    """A run with the address of the scheduler or with a client; the run does not close the client."""
     from distributed import Client
 
-    study = small_study("large", sweep=LARGE)
+    study = small_study("large", sweep=LARGE_SWEEP)
     run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
     with Client(str(two_workers)) as client, mock.patch.object(client, "submit", wraps=client.submit) as submit:
         for scheduler in (two_workers, client):
@@ -134,13 +138,13 @@ def test_cluster_of_separate_processes(two_workers, tmp_path):
             assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
             assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
         assert client.status == "running"
-    # The scheduler's memory would contain objects for every case of a task.
+    # Cases are sent as bytes; otherwise the scheduler would store objects for every case of a task.
     assert {type(argument) for call in submit.call_args_list for argument in call.args[1:]} == {bytes}
 
 
 @pytest.mark.system
 def test_dead_cluster_worker_fails_one_case(two_workers, tmp_path):
-    """The cluster replaces the worker: the tests below use it again."""
+    """The cluster replaces the worker for the next tests."""
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
     )
@@ -151,8 +155,8 @@ def test_dead_cluster_worker_fails_one_case(two_workers, tmp_path):
 
 @pytest.mark.system
 def test_results_do_not_depend_on_workers(two_workers, tmp_path):
-    """Bit for bit: in this process, with two workers, and on a cluster."""
-    study = small_study(base=BASE | SHORT, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
+    """Results are equal bit for bit in this process, with two workers, and on a cluster."""
+    study = small_study(base=BASE | SHORT_ROLLER, sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
     for workers in (0, 2):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
     run_study(study, tmp_path / "cluster", scheduler=two_workers)

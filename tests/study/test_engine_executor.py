@@ -1,4 +1,4 @@
-"""Tasks and their sizes, and workers that die."""
+"""Tasks and their sizes; death of workers."""
 
 from unittest import mock
 
@@ -12,11 +12,11 @@ from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
 
-def tasks_of(study, groups, folder=""):
+def make_tasks(study, groups, folder=""):
     return Tasks(study.plan(), groups, Task(cases=(), folder=str(folder)))
 
 
-def ids(task):
+def list_names(task):
     return [case.name for case in task.cases]
 
 
@@ -25,42 +25,44 @@ def many_cases():
     return small_study(sweep={"e_over_a": [0.0, 1.0, 2.0, 3.0], "friction": [0.0, 0.1]})
 
 
-def test_groups_contain_the_frictions_of_a_contact(many_cases):
+def test_group_contains_frictions_of_contact(many_cases):
     assert many_cases.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
     coupled_study = small_study(base=dict(many_cases.base) | {"coupled": True}, sweep=dict(many_cases.sweep))
     assert coupled_study.plan().groups.tolist() == list(range(8))
 
 
-@pytest.mark.parametrize(("workers", "cases"), [(1, 6), (2, 2)])
-def test_task_size_follows_measured_time(many_cases, workers, cases):
-    tasks = tasks_of(many_cases, [[0, 1], [2, 3], [4, 5], [6, 7]])
+@pytest.mark.parametrize(("workers", "expected_count"), [(1, 6), (2, 2)])
+def test_task_size_follows_measured_time(many_cases, workers, expected_count):
+    tasks = make_tasks(many_cases, [[0, 1], [2, 3], [4, 5], [6, 7]])
     first_task = tasks.next_task(workers)
     assert len(first_task.cases) == 2
     tasks.finish(first_task, [(case.id, "ok", "") for case in first_task.cases], 0.1)
-    assert len(tasks.next_task(workers).cases) == cases  # of six; two workers: a third, in whole groups
-    assert tasks.remaining == 6 - cases
+    assert (
+        len(tasks.next_task(workers).cases) == expected_count
+    )  # one worker: all six; two workers: a third, in whole groups
+    assert tasks.remaining == 6 - expected_count
 
 
 def test_one_worker_receives_tasks_of_full_length(many_cases):
-    """A halved rest would end in ever smaller tasks, each with a file of its own."""
-    tasks = tasks_of(many_cases, [[0], [1], [2], [3], [4], [5], [6], [7]])
+    """Halving the remaining cases would cause many small tasks, with one file each."""
+    tasks = make_tasks(many_cases, [[0], [1], [2], [3], [4], [5], [6], [7]])
     task = tasks.next_task(1)
     tasks.finish(task, [(task.cases[0].id, "ok", "")], RUN.task_seconds / 3)
     assert [len(tasks.next_task(1).cases) for _ in range(3)] == [3, 3, 1]
 
 
 def test_case_fails_at_second_worker_death(many_cases):
-    tasks = tasks_of(many_cases, [[0, 1]])
+    tasks = make_tasks(many_cases, [[0, 1]])
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
     single_tasks = [tasks.next_task(1) for _ in range(2)]
     assert [len(task.cases) for task in single_tasks] == [1, 1]
-    assert [case.name for case in tasks.return_task(single_tasks[0], died=True)] == ids(single_tasks[0])
+    assert [case.name for case in tasks.return_task(single_tasks[0], died=True)] == list_names(single_tasks[0])
     assert not tasks
 
 
 def test_execution_in_process_yields_outcomes(many_cases, tmp_path):
-    tasks = tasks_of(many_cases, [[0, 1], [2, 3]], tmp_path)
+    tasks = make_tasks(many_cases, [[0, 1], [2, 3]], tmp_path)
     outcomes = [
         outcome for task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in task_outcomes
     ]
@@ -88,7 +90,7 @@ class FakeClient:
         return {"workers": workers}
 
 
-def test_workers_of_another_version_are_left_out():
+def test_workers_of_other_version_are_excluded():
     from contactstudy.arrays.variables import package_version
 
     messages = []

@@ -1,4 +1,4 @@
-"""Locks, states and joined batches of a study's folder."""
+"""Locks, damaged files and joined batches of the folder of a study."""
 
 import json
 import os
@@ -19,22 +19,22 @@ from contactstudy.study.settings import RunSettings
 from contactstudy.study.worker import Task, batch_of_case
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
-from tests.study.conftest import ROOT, planned_case
+from tests.study.conftest import ROOT, make_planned_case
 
 
 def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
 
 
-def failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
+def make_failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
-    case = planned_case(index, parameters)
+    case = make_planned_case(index, parameters)
     return batch_of_case(Task(cases=(), folder="", run=run), case, "failed", message, warnings_of_case=warnings)
 
 
-def rows(count, **options):
+def make_batch(count, **options):
     """Batch of cases without results."""
-    return join_batches([failed_batch(index, {"friction": 0.1}, **options) for index in range(count)])
+    return join_batches([make_failed_batch(index, {"friction": 0.1}, **options) for index in range(count)])
 
 
 def test_lock_error_contains_holder(tmp_path):
@@ -50,12 +50,15 @@ def test_lock_error_contains_holder(tmp_path):
 
 def test_share_lock_excludes_run_and_same_share(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "RUN", RunSettings(share_seconds=0.1))
-    whole, first, second, third = Folder(tmp_path), *(Folder(tmp_path, Share(number, 3)) for number in (1, 2, 3))
-    with first.locked(), second.locked():
-        for folder in (first, whole):
+    whole_folder, first_share, second_share, third_share = (
+        Folder(tmp_path),
+        *(Folder(tmp_path, Share(number, 3)) for number in (1, 2, 3)),
+    )
+    with first_share.locked(), second_share.locked():
+        for folder in (first_share, whole_folder):
             with pytest.raises(LockedError), folder.locked():
                 pass
-    with whole.locked(), pytest.raises(LockedError), third.locked():
+    with whole_folder.locked(), pytest.raises(LockedError), third_share.locked():
         pass
 
 
@@ -78,7 +81,7 @@ def test_pipe_as_lock_raises(tmp_path):
 
 
 def test_batch_round_trip(tmp_path):
-    write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
+    write_batch(tmp_path, "a", make_batch(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
     assert find_damage(path) == ""
     cases = read_batch(path, parameters=True).cases
@@ -91,7 +94,7 @@ def test_batch_round_trip(tmp_path):
 def test_batch_stores_parameter_tables_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
     parameters = [{"young": 1.0, "profile": profiles[index % 2], "friction": 0.1 * index} for index in range(40)]
-    batch = join_batches([failed_batch(index, entry) for index, entry in enumerate(parameters)])
+    batch = join_batches([make_failed_batch(index, entry) for index, entry in enumerate(parameters)])
     write_batch(tmp_path, "a", batch)
     (path,) = batch_paths(tmp_path)
     assert read_batch(path, parameters=True).cases["parameters"].equals(batch.cases["parameters"])
@@ -100,7 +103,7 @@ def test_batch_stores_parameter_tables_once(tmp_path):
 
 @pytest.mark.parametrize("change", [lambda data: data[:-10], lambda data: b"", lambda data: b"x" + data[1:]])
 def test_damage_is_detected(tmp_path, change):
-    write_batch(tmp_path, "a", rows(2))
+    write_batch(tmp_path, "a", make_batch(2))
     (path,) = batch_paths(tmp_path)
     path.write_bytes(change(path.read_bytes()))
     assert "checksum" in find_damage(path)
@@ -110,7 +113,7 @@ def test_small_batches_are_joined(tmp_path):
     folder = Folder(tmp_path)
     folder.create()
     for index in range(20):
-        write_batch(folder.batches, f"a{index}", failed_batch(index, {}))
+        write_batch(folder.batches, f"a{index}", make_failed_batch(index, {}))
         folder.compact()
     assert len(batch_paths(folder.batches)) < 10
     folder.compact(at_end=True)
@@ -119,14 +122,14 @@ def test_small_batches_are_joined(tmp_path):
 
 
 def test_latest_run_replaces_results(tmp_path):
-    batch = join_batches([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
+    batch = join_batches([make_batch(2), make_batch(2, run=3, message="later"), make_batch(2, run=2)])
     assert select_latest(batch).cases["message"].tolist() == ["later"] * 2
     assert select_latest(batch).cases["run"].tolist() == [3, 3]
 
 
 @pytest.mark.parametrize("statuses", [("ok", "failed"), ("failed", "ok")])
 def test_failed_group_replaces_films_of_the_same_run(statuses):
-    batches = [rows(1) for _ in statuses]
+    batches = [make_batch(1) for _ in statuses]
     for batch, status in zip(batches, statuses, strict=True):
         batch.cases["status"] = status
     assert select_latest(join_batches(batches)).cases["status"].tolist() == ["failed"]
@@ -157,13 +160,13 @@ def test_failed_write_keeps_previous_file(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "before")
 
-    def fail():
+    def write_and_fail():
         with writing(path) as temporary_path:
             temporary_path.write_text("half")
             raise OSError("no space")
 
     with pytest.raises(StoreError, match="no space"):
-        fail()
+        write_and_fail()
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -1,4 +1,4 @@
-"""The files follow the CF conventions, and other programs read them."""
+"""Files follow the CF conventions and are readable by other programs."""
 
 import re
 import subprocess
@@ -18,8 +18,8 @@ from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    """One case of every level, and the merged summary."""
+def result_files(tmp_path_factory):
+    """A batch of each level, and the summary file."""
     paths = []
     for level in ("summary", "surface", "fields"):
         folder = tmp_path_factory.mktemp(level)
@@ -31,30 +31,30 @@ def files(tmp_path_factory):
 
 
 @pytest.mark.system
-def test_batch_is_readable_without_hdf5_library(files):
-    """Pyfive reads the bytes in pure Python, independent of the library that wrote them."""
-    import pyfive  # the `dev` extra has it: it needs newer companions than the package
+def test_batch_is_readable_without_hdf5_library(result_files):
+    """Pyfive reads the files in pure Python, without the HDF5 library."""
+    import pyfive  # part of the `dev` extra; requires newer packages than contactstudy
 
-    for path in files:
+    for path in result_files:
         with pyfive.File(path) as file:
             assert file["peak_pressure"].attrs["units"] in ("Pa", b"Pa")
             assert any(name.startswith("contactstudy_") for name in file.attrs)
-    with pyfive.File(files[2]) as file:
-        (case,) = Folder(files[2].parents[1]).results().cases.index
-        pressure = load_case(files[2].parents[1], case)["pressure"].values
+    with pyfive.File(result_files[2]) as file:
+        (case,) = Folder(result_files[2].parents[1]).results().cases.index
+        pressure = load_case(result_files[2].parents[1], case)["pressure"].values
         np.testing.assert_array_equal(file["pressure"][...], pressure.ravel())
 
 
 @pytest.mark.system
-def test_cf_checker_finds_no_errors(files):
-    checker = Path(sys.executable).with_name("compliance-checker")
-    process = subprocess.run([checker, "--test=cf:1.11", *files], capture_output=True, text=True, check=False)
+def test_cf_checker_finds_no_errors(result_files):
+    command = Path(sys.executable).with_name("compliance-checker")
+    process = subprocess.run([command, "--test=cf:1.11", *result_files], capture_output=True, text=True, check=False)
     assert process.returncode == 0, process.stdout + process.stderr
-    assert process.stdout.count("All tests passed!") == len(files), process.stdout
+    assert process.stdout.count("All tests passed!") == len(result_files), process.stdout
 
 
-def test_batch_follows_cf_rules(files):
-    for path in files:
+def test_batch_follows_cf_rules(result_files):
+    for path in result_files:
         with netCDF4.Dataset(path) as file:
             assert file.Conventions == "CF-1.11"
             for name in ("title", "source", "history"):
@@ -74,8 +74,8 @@ def test_batch_follows_cf_rules(files):
                         assert variable.size == 1 or (np.diff(variable[:]) > 0).all(), name
 
 
-def test_netcdf4_and_h5netcdf_read_equal_values(files):
-    for path in files:
+def test_netcdf4_and_h5netcdf_read_equal_values(result_files):
+    for path in result_files:
         with netCDF4.Dataset(path) as netcdf4_file, h5netcdf.File(path, "r") as h5netcdf_file:
             netcdf4_file.set_auto_mask(False)
             netcdf4_file.set_auto_chartostring(False)

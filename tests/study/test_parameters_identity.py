@@ -21,11 +21,11 @@ def test_identity_rounds_to_twelve_digits(value):
     assert case_id({"friction": value}) == case_id({"friction": float(f"{value:.12g}")})
 
 
-def test_different_values_differ():
+def test_different_values_have_different_identity():
     assert case_id({"e_over_a": 1}) != case_id({"e_over_a": 1.000001})
 
 
-def test_order_defaults_and_profile_names_do_not_count():
+def test_identity_ignores_order_defaults_and_profile_names():
     parameters = {"friction": 0.1, "e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
     equal_parameters = {
         "coupled": False,
@@ -57,7 +57,7 @@ def test_new_default_parameter_keeps_identities(monkeypatch):
 
 
 def test_identity_never_changes():
-    """Results on disk depend on this value: a change requires a new SCHEMA instead of another value."""
+    """Results on disk depend on this value; if it must change, SCHEMA must change."""
     assert case_id({"friction": 0.1, "e_over_a": 2})[:16] == "d6d0687246844912"
 
 

@@ -1,4 +1,4 @@
-"""Identities of the cases of studies/, and their defaults: the identities locate results on disk."""
+"""Identities of the cases of studies/, which locate results on disk, and defaults of parameters."""
 
 import hashlib
 import inspect
@@ -16,7 +16,7 @@ from contactstudy.study.profile_tables import check_number
 from tests.small_study import BASE
 from tests.study.conftest import ROOT
 
-STORED = {
+STORED_IDENTITIES = {
     "edge_effect": (48, "afc89e0b3e7aff3b"),
     "end_distance": (27, "63cb95128676bb57"),
     "friction": (33, "96f92ee20a25bd8e"),
@@ -45,11 +45,11 @@ DEFAULTS = {
 }
 
 
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", STORED_IDENTITIES)
 def test_identities_of_stored_studies_never_change(name):
     cases = Study.from_toml(ROOT / "studies" / f"{name}.toml").plan()
-    all_ids = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
-    assert (len(cases), all_ids[:16]) == STORED[name]
+    digest = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
+    assert (len(cases), digest[:16]) == STORED_IDENTITIES[name]
 
 
 def test_defaults_match_stored_cases():
@@ -58,24 +58,26 @@ def test_defaults_match_stored_cases():
 
 
 def test_new_table_entry_adds_parameter(monkeypatch):
-    def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
+    def call_parameter_consumer(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new_parameter = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
+    new_parameter = Parameter(
+        name="sharpness", check=check_number, units="1", meaning="made up", consumer=call_parameter_consumer
+    )
     monkeypatch.setitem(PARAMETERS, "sharpness", new_parameter)
     assert new_parameter.default == 0.5
-    assert keywords_of(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
+    assert keywords_of(call_parameter_consumer, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 
 def test_study_uses_default_grid():
-    case = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
-    assert case.grid == choose_grid(case.case)
-    assert list(case.grids) == list(create_widening_grids(case.case))
-    assert len(list(case.grids)) == len(WINDOWS)
-    assert set(case.options) == {"x", "y", "z", "stresses", "tolerance"}
-    assert set(case.options) <= set(inspect.signature(solve).parameters)
+    setup = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
+    assert setup.grid == choose_grid(setup.case)
+    assert list(setup.grids) == list(create_widening_grids(setup.case))
+    assert len(list(setup.grids)) == len(WINDOWS)
+    assert set(setup.options) == {"x", "y", "z", "stresses", "tolerance"}
+    assert set(setup.options) <= set(inspect.signature(solve).parameters)
 
 
-@pytest.mark.parametrize("chosen", [{"window": 2.2}, {"margin": 3.0}])
-def test_explicit_window_is_kept(chosen):
-    setup = build_setup(BASE | {"e_over_a": 1.0} | chosen)
+@pytest.mark.parametrize("changes", [{"window": 2.2}, {"margin": 3.0}])
+def test_explicit_window_is_kept(changes):
+    setup = build_setup(BASE | {"e_over_a": 1.0} | changes)
     assert list(setup.grids) == [setup.grid]

@@ -1,4 +1,4 @@
-"""Texts of the command line on a study."""
+"""Texts about a study on the command line."""
 
 from contactstudy.cli import format_bytes
 from contactstudy.study.plan import format_value
@@ -6,7 +6,7 @@ from contactstudy.study.profile_tables import format_profile
 from contactstudy.study.run import format_duration
 
 
-def test_sizes_and_durations():
+def test_sizes_and_durations_have_units():
     assert [format_bytes(size) for size in (20, 123456, 5e12)] == ["20 bytes", "123 kB", "5e+03 GB"]
     assert [format_duration(seconds) for seconds in (7.4, 200, 9000)] == ["7 s", "3.3 min", "2.5 h"]
 

@@ -14,7 +14,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.profile_tables import PROFILES, format_profile, profile_table
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
 
@@ -32,30 +32,32 @@ EXAMPLES = {
     "ellipsoid": profiles.Ellipsoid(0.5),
     "sphere": profiles.Sphere(BASE["radius"]),
     "chamfer": profiles.Chamfer(width=2e-5, angle=0.05),
-    "measured": profiles.Measured([round(5e-5 * k, 6) for k in range(11)], [4e-7] + 9 * [1e-7] + [0.0], 1e-6, 3e-4),
+    "measured": profiles.Measured(
+        [round(5e-5 * index, 6) for index in range(11)], [4e-7] + 9 * [1e-7] + [0.0], 1e-6, 3e-4
+    ),
     "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
     "effective-length": profiles.EffectiveLength(profiles.FullCrown(0.5), 4.5e-4),
     "sum": profiles.Tapered(0.05) + profiles.IsoTapered(8e-3),
 }
 
 
-def built(profile: object) -> profiles.Profile:
+def build_profile(profile: object) -> profiles.Profile:
     return build_setup(BASE | {"e_over_a": 1, "profile": profile}).case.roller.profile
 
 
-def trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
+def write_trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
     """File with a measured crown of `height` micrometres at the ends, as long as the roller of BASE."""
     folder.mkdir(exist_ok=True)
     path, x = folder / name, np.linspace(-1, 1, 51)
-    rows = [f"{1e3 * LENGTH * a / 2:.6f}, {height * a * a:.6f}" for a in x]
+    rows = [f"{1e3 * LENGTH * position / 2:.6f}, {height * position * position:.6f}" for position in x]
     path.write_text("\n".join(["x [mm], drop [um]", *rows]))
     return path
 
 
 def test_profile_classes_have_kinds() -> None:
-    public = {getattr(profiles, name) for name in profiles.__all__}
+    public_objects = {getattr(profiles, name) for name in profiles.__all__}
     assert {kind.profile_class for kind in PROFILES.values()} == {
-        entry for entry in public if dataclasses.is_dataclass(entry)
+        entry for entry in public_objects if dataclasses.is_dataclass(entry)
     }
     assert set(EXAMPLES) == set(PROFILES)
 
@@ -63,24 +65,24 @@ def test_profile_classes_have_kinds() -> None:
 @pytest.mark.parametrize("kind", EXAMPLES)
 def test_profile_object_table_and_json_agree(kind: str) -> None:
     profile = EXAMPLES[kind]
-    assert built(profile) == profile
+    assert build_profile(profile) == profile
     table = profile_table("profile", profile)
     assert table["kind"] == kind
     restored_table = json.loads(json.dumps(table))
-    assert built(restored_table) == profile
+    assert build_profile(restored_table) == profile
     assert case_id({"profile": profile}) == case_id({"profile": restored_table})
     assert format_profile(table)
 
 
-def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
+def test_documented_profiles_are_valid(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "reference" / "study_file.md").read_text()
     block = next(section for section in text.split("```toml\n") if section.startswith("[[sweep.profile]]")).split(
         "```"
     )[0]
-    trace(tmp_path / "traces", name="roller_7.csv")
-    file = tmp_path / "documented.toml"
-    file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
-    plan = Study.from_toml(file).plan()
+    write_trace(tmp_path / "traces", name="roller_7.csv")
+    path = tmp_path / "documented.toml"
+    path.write_text(format_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
+    plan = Study.from_toml(path).plan()
     assert (len(plan), plan.skipped) == (2, [])
 
 
@@ -91,45 +93,45 @@ def test_identity_of_profiles_never_changes() -> None:
 
 
 @pytest.mark.parametrize("kind", ["lundberg", "johns-gohar", "fujiwara-kawase"])
-def test_design_pressure(kind: str) -> None:
-    higher_pressure = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
+def test_profile_from_design_pressure_equals_for_pressure(kind: str) -> None:
+    edge_options = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
     modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
-    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **higher_pressure)  # type: ignore[attr-defined]
-    assert built({"kind": kind, "design_pressure": 2e9, **higher_pressure}) == profile
+    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **edge_options)  # type: ignore[attr-defined]
+    assert build_profile({"kind": kind, "design_pressure": 2e9, **edge_options}) == profile
 
 
-def test_design_load() -> None:
-    profile = built({"kind": "lundberg", "design_load": 100.0})
+def test_profile_from_design_load_equals_for_load() -> None:
+    profile = build_profile({"kind": "lundberg", "design_load": 100.0})
     material = Material(BASE["young"], BASE["poisson"])
-    about = {"radius": BASE["radius"], "modulus": material.plane_strain_modulus}
-    assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **about)
+    contact_parameters = {"radius": BASE["radius"], "modulus": material.plane_strain_modulus}
+    assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **contact_parameters)
 
 
 def test_profile_defaults_scale_with_radius() -> None:
-    assert built("sphere") == profiles.Sphere(BASE["radius"])
-    assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
-    assert built({"kind": "iso-tapered", "diameter": 1e-2}) == profiles.IsoTapered(1e-2)
+    assert build_profile("sphere") == profiles.Sphere(BASE["radius"])
+    assert build_profile("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
+    assert build_profile({"kind": "iso-tapered", "diameter": 1e-2}) == profiles.IsoTapered(1e-2)
 
 
 def test_identity_depends_on_file_content_only(tmp_path: Path) -> None:
     def identity(path: Path, **options) -> str:
         return case_id(BASE | {"profile": {"kind": "measured", "file": str(path), **options}})
 
-    first_identity = identity(trace(tmp_path / "one"))
-    assert identity(trace(tmp_path / "two", name="moved.csv")) == first_identity
-    assert identity(trace(tmp_path / "one", height=1.001)) != first_identity
-    assert identity(trace(tmp_path / "one")) == first_identity
+    first_identity = identity(write_trace(tmp_path / "one"))
+    assert identity(write_trace(tmp_path / "two", name="moved.csv")) == first_identity
+    assert identity(write_trace(tmp_path / "one", height=1.001)) != first_identity
+    assert identity(write_trace(tmp_path / "one")) == first_identity
     assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first_identity
     assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first_identity
     assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first_identity
-    filtered_profile = built(
+    filtered_profile = build_profile(
         {"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180}
     )
     assert filtered_profile.cutoff == 1e-4
 
 
 def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -> None:
-    path = trace(tmp_path / "traces")
+    path = write_trace(tmp_path / "traces")
     entries = [
         {"kind": "measured", "file": "traces/trace.csv"},
         {"kind": "sum", "name": "both", "terms": [{"kind": "measured", "file": "traces/trace.csv"}, "cylinder"]},
@@ -140,7 +142,7 @@ def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -
         "[[sweep.profile]]\nkind = 'sum'\nname = 'both'",
         "terms = [{ kind = 'measured', file = 'traces/trace.csv' }, 'cylinder']",
     ]
-    file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + "\n".join(lines))
+    file.write_text(format_toml(small_study(sweep={"e_over_a": [1.0]})) + "\n".join(lines))
     monkeypatch.chdir(ROOT)
     study = Study.from_toml(file)
     monkeypatch.chdir(tmp_path)
@@ -153,8 +155,10 @@ def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -
     assert (dataset["status"] == "ok").all()
 
 
-def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
-    tables = [profile_table("profile", profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
+def test_labels_of_different_measured_profiles_differ(tmp_path: Path) -> None:
+    tables = [
+        profile_table("profile", profiles.Measured.from_file(write_trace(tmp_path, height))) for height in (1.0, 2.0)
+    ]
     assert len({format_profile(table) for table in tables}) == 2
     assert format_profile(profile_table("profile", EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
 
@@ -190,6 +194,6 @@ def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
         ({"kind": "sum", "terms": []}, "terms = "),
     ],
 )
-def test_bad_tables_are_named(table, message: str) -> None:
+def test_invalid_profile_table_raises(table, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        built(table)
+        build_profile(table)

@@ -1,4 +1,4 @@
-"""User profiles in a study: identity by content, on workers, in files, and rejected profiles."""
+"""User profiles in a study: identities, workers, files, and invalid profiles."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Cosine(profiles.Shape):
 class Wedge:
     """Profile class that is neither a dataclass nor derived from a class."""
 
-    def __init__(self, slope, **more):
+    def __init__(self, slope, **attributes):
         self.slope = slope
-        self.__dict__ |= more
+        self.__dict__ |= attributes
 
     def drop(self, x, length):
         return self.slope * np.abs(x)
@@ -51,13 +51,13 @@ def test_user_profiles_differ_by_content() -> None:
 
 
 def test_changed_formula_changes_identity() -> None:
-    class Now(Cosine):
+    class ChangingCosine(Cosine):
         def drop(self, x, length):
             return super().drop(x, length) + 1e-7 * (x / length) ** 4
 
-    first_identity = identity(Now(2e-6))
-    Now.drop = Cosine.drop
-    assert identity(Now(2e-6)) != first_identity
+    first_identity = identity(ChangingCosine(2e-6))
+    ChangingCosine.drop = Cosine.drop
+    assert identity(ChangingCosine(2e-6)) != first_identity
 
 
 def test_case_keeps_unmodified_profile() -> None:
@@ -73,22 +73,22 @@ def test_case_keeps_unmodified_profile() -> None:
 def test_workers_solve_user_profile(tmp_path: Path) -> None:
     """The class is local to this function, so that a worker cannot import it."""
 
-    class Local(Wedge):
+    class LocalWedge(Wedge):
         pass
 
-    swept = {"profile": [Local(1e-4), Cosine(2e-6), "cylinder"], "friction": [0.0]}
+    swept = {"profile": [LocalWedge(1e-4), Cosine(2e-6), "cylinder"], "friction": [0.0]}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=swept)
     assert run_study(study, tmp_path, workers=1, progress=False).counts == {"ok": 3}
     dataset = open_study(tmp_path)
     assert dataset.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
     assert dataset.profile.values[0].startswith("Local ")
-    first = load_case(tmp_path, study.plan()[0].id)
-    assert '"class": "Local", "values": {"slope": 0.0001}' in first.attrs["contactstudy_case"]
-    drop = solved_case(first).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
+    first_case = load_case(tmp_path, study.plan()[0].id)
+    assert '"class": "Local", "values": {"slope": 0.0001}' in first_case.attrs["contactstudy_case"]
+    drop = solved_case(first_case).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
     np.testing.assert_allclose(drop, [1e-8, 2e-8])
 
 
-def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
+def test_run_without_user_profile_raises(tmp_path: Path, monkeypatch) -> None:
     study = small_study(base=BASE | {"e_over_a": 1.0, "profile": Wedge(1e-4)}, sweep={"friction": [0.0]})
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
     for content in list(REGISTRY):
@@ -117,26 +117,26 @@ def test_profile_without_content_raises(profile: Wedge, message: str) -> None:
 
 
 def test_unpicklable_profile_raises() -> None:
-    class Bound(Wedge):
+    class UnpicklableWedge(Wedge):
         def __reduce__(self):
             raise TypeError("bound to a file")
 
     with pytest.raises(
-        InvalidInputError, match=r"'Bound': must be an object that can be pickled.*bound to a file.*list"
+        InvalidInputError, match=r"'UnpicklableWedge': must be an object that can be pickled.*bound to a file.*list"
     ):
-        Study(name="refused", base={"profile": Bound(1e-4)})
+        Study(name="refused", base={"profile": UnpicklableWedge(1e-4)})
 
 
 def test_profile_with_different_copy_raises() -> None:
-    class Forgetful(Wedge):
+    class WedgeWithoutSlope(Wedge):
         def __reduce__(self):
             return Wedge, (0.0,)
 
     with pytest.raises(InvalidInputError, match="its copy is another profile"):
-        Study(name="refused", base={"profile": Forgetful(1e-4)})
+        Study(name="refused", base={"profile": WedgeWithoutSlope(1e-4)})
 
 
-def test_arrays_and_profiles_within_count() -> None:
+def test_identity_depends_on_arrays_and_inner_profiles() -> None:
     points = np.linspace(0, 1, 200)
     assert identity(Wedge(1e-4, points=points)) != identity(Wedge(1e-4, points=points**2))
     assert identity(Wedge(1e-4, base=Cosine(1e-6))) != identity(Wedge(1e-4, base=Cosine(2e-6)))

@@ -17,7 +17,7 @@ from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import small_study
 from tests.stand_in_solver import DIES, FAILS, IS_LARGE, WRONG_FRICTION, solve_fake
-from tests.study.conftest import ROOT, count_finished, intact
+from tests.study.conftest import ROOT, count_finished, has_intact_batches
 
 NOBODY = 65534
 
@@ -54,16 +54,16 @@ def test_memory_error_fails_single_case(tmp_path):
     assert report.failures[0][1] == "MemoryError: Unable to allocate 7 EiB"
 
 
-def run_quietly(case, grid, **settings):
+def solve_failed_case(case, grid, **settings):
     assert case.friction == FAILS
     object.__setattr__(case, "friction", 0.0)
     return solve_fake(case, grid, **settings)
 
 
-def test_rerun_repairs(tmp_path):
+def test_rerun_solves_failed_cases(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     run(study, tmp_path)
-    assert rerun_study(tmp_path, workers=0, solver=run_quietly).counts == {"ok": 4}
+    assert rerun_study(tmp_path, workers=0, solver=solve_failed_case).counts == {"ok": 4}
     assert "failed" not in open_study(tmp_path)["status"]
 
 
@@ -83,7 +83,7 @@ def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_numbe
     assert (type(caught.value), str(caught.value)) == (kind, message)
     traceback_text = "".join(traceback.format_exception(caught.value))
     assert "interrupted(case" not in traceback_text
-    assert traceback_text.count("File ") == 3  # the frames are this test, its helper and the public function
+    assert traceback_text.count("File ") == 3  # frames: the test, its helper `run`, the public function
     assert message in (tmp_path / "run.log").read_text()
     assert run(study, tmp_path).solved == 2
 
@@ -99,8 +99,8 @@ def test_program_error_stops_run(tmp_path, workers):
     assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
 
 
-def partial_study(**changes):
-    """One half of the small study, with its cases alone in a batch."""
+def make_partial_study(**changes):
+    """The cases of the small study at one end distance."""
     return small_study(sweep={"e_over_a": [changes["e_over_a"]], "friction": [0.0, 0.1]})
 
 
@@ -110,7 +110,7 @@ def two_batches(study, tmp_path, monkeypatch):
     monkeypatch.setattr(Folder, "compact", lambda self, at_end=False: None)
     monkeypatch.setattr(worker, "RUN", RunSettings(save_seconds=60.0))
     for e_over_a in (0.0, 1.0):
-        run(partial_study(e_over_a=e_over_a), tmp_path)
+        run(make_partial_study(e_over_a=e_over_a), tmp_path)
     Folder(tmp_path).write_study(study)
     assert [len(batch) for batch in Folder(tmp_path).results().batches] == [2, 2]
     return tmp_path
@@ -188,7 +188,7 @@ def test_uncreatable_folder_raises(study, tmp_path):
 
 
 @contextlib.contextmanager
-def ordinary_user():
+def become_ordinary_user():
     """User without root's right to write anywhere."""
     if os.geteuid() != 0:
         yield
@@ -204,8 +204,8 @@ def ordinary_user():
 
 
 @pytest.fixture
-def open_place():
-    """A folder that every user may enter, unlike pytest's folder."""
+def open_folder():
+    """A folder in which every user may write, unlike pytest's temporary folder."""
     path = Path(tempfile.mkdtemp())
     path.chmod(0o777)
     yield path
@@ -216,27 +216,27 @@ def open_place():
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
 @pytest.mark.parametrize("closed_folder", ["", "batches"])
-def test_folder_without_permission_raises(study, open_place, closed_folder):
-    folder = open_place / "out"
+def test_folder_without_permission_raises(study, open_folder, closed_folder):
+    folder = open_folder / "out"
     run(study, folder)
     larger_study = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
     for path in (folder, *folder.glob("**/*")):
         path.chmod(0o777)
     (folder / closed_folder).chmod(0o555)
-    with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
+    with become_ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
         run(larger_study, folder)
     (folder / closed_folder).chmod(0o777)
     assert not Folder(folder).holders
-    assert intact(folder)
+    assert has_intact_batches(folder)
     report = run(larger_study, folder)
     assert (report.counts, report.solved) == ({"ok": 6}, 2)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-def test_forbidden_folder_raises(study, open_place):
-    open_place.chmod(0o555)
-    with ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
-        run(study, open_place / "new")
+def test_forbidden_folder_raises(study, open_folder):
+    open_folder.chmod(0o555)
+    with become_ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
+        run(study, open_folder / "new")
 
 
 @pytest.fixture
@@ -260,7 +260,7 @@ def test_full_disk_raises(small_disk, study, workers):
         run(study, small_disk / "out", workers=workers)
     assert not list(small_disk.glob("**/*.part-*"))
     assert not Folder(small_disk / "out").holders
-    assert intact(small_disk / "out")
+    assert has_intact_batches(small_disk / "out")
     finished_count = count_finished(small_disk / "out")
     filler_path.unlink()
     report = run(study, small_disk / "out")
@@ -286,23 +286,23 @@ from contactstudy.study.run import Progress
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
-sizes, count = [], Progress.record
+memory_sizes, original_record = [], Progress.record
 
-def note(self, outcome):
-    count(self, outcome)
-    sizes.append(psutil.Process().memory_info().rss)
+def record_with_memory(self, outcome):
+    original_record(self, outcome)
+    memory_sizes.append(psutil.Process().memory_info().rss)
 
-Progress.record = note
-run.RUN = replace(run.RUN, compact_seconds=1e9)  # joined batches take memory up to batch_bytes, whenever that is
+Progress.record = record_with_memory
+run.RUN = replace(run.RUN, compact_seconds=1e9)  # joining batches takes memory up to batch_bytes
 sweep = {"e_over_a": [0, 1, 2, 3, 4], "max_pressure": [1e9 + 1e6 * number for number in range(100)]}
 assert run_study(small_study(sweep=sweep), sys.argv[1], workers=2, solver=solve_fake).counts == {"ok": 500}
-print(max(sizes[250:]) - sizes[250])
+print(max(memory_sizes[250:]) - memory_sizes[250])
 """
 
 
 @pytest.mark.slow
 def test_parent_memory_does_not_grow(tmp_path):
-    """Over the second half of 500 cases of two workers that retain fields."""
+    """The memory is measured over the second half of 500 cases with fields."""
     command = [sys.executable, "-c", MEMORY_OF_A_RUN, str(tmp_path)]
     growth = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert float(growth.split()[-1]) < 8e6
@@ -314,7 +314,7 @@ def test_sample_solves_evenly_spaced_cases(study, tmp_path):
     assert report.states.status[0] == report.states.status[-1] == "ok"
 
 
-def test_shares_complete_study(study, tmp_path):
+def test_shares_equal_whole_study(study, tmp_path):
     for share_number in (2, 1, 3):
         run(study, tmp_path / "shares", share=(share_number, 3))
     run(study, tmp_path / "whole")

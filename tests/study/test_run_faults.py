@@ -1,4 +1,4 @@
-"""Wrong or hostile content of folders, files and studies raises a package error, or has no effect."""
+"""Invalid or malicious content of folders, files and studies raises a package error or has no effect."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from contactstudy.cli import main
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.study import Study, StudyFileError, open_study, run_study
 from contactstudy.study.case_setup import build_setup
-from tests.small_study import BASE, as_toml, case_id, small_study
+from tests.small_study import BASE, case_id, format_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 
@@ -26,14 +26,14 @@ def test_invalid_study_json_raises(tmp_path, content):
 
 @pytest.mark.parametrize("content", ["[sweep]\nfriction = [%s]", "[base]\nradius = %s"])
 @pytest.mark.parametrize("number", ["1" * 400, "1" * 5000, "1e-300", "1e300"])
-def test_numbers_beyond_arithmetic(tmp_path, content, number):
+def test_numbers_out_of_range_raise(tmp_path, content, number):
     path = tmp_path / "s.toml"
     path.write_text(content % number)
     with pytest.raises(ContactStudyError, match=r"s\.toml|friction|radius"):
         Study.from_toml(path)
 
 
-def test_nesting_beyond_sense(tmp_path):
+def test_deep_nesting_raises(tmp_path):
     nested_table = "{kind='sum',terms=[" * 400 + "'cylinder'" + "]}" * 400
     path = tmp_path / "s.toml"
     path.write_text(f"[base]\nprofile = {nested_table}")
@@ -46,13 +46,13 @@ def test_nesting_beyond_sense(tmp_path):
         case_id({"profile": profile})
 
 
-def test_points_beyond_counting():
+def test_too_many_points_raise():
     with pytest.raises(InvalidInputError, match="at most 100000"):
         case_id({"field_x_over_a": {"start": 0, "stop": 1, "count": 10**9}})
 
 
 @pytest.mark.parametrize("changes", [{"max_pressure": 1e-49}, {"load": 1e49, "max_pressure": None}, {"young": 1e-49}])
-def test_extreme_cases_are_skipped_and_stop_no_plan(changes):
+def test_extreme_case_is_skipped(changes):
     base = {name: value for name, value in (BASE | {"e_over_a": 1.0} | changes).items() if value is not None}
     plan = small_study(base=base, sweep={"friction": [0.0]}).plan()
     assert [bool(case.reason) for case in plan] == [True]
@@ -115,7 +115,7 @@ def test_written_files_replace_links(tmp_path):
     for name in names:
         (folder / name).symlink_to(target)
     path = tmp_path / "small.toml"
-    path.write_text(as_toml(small_study()))
+    path.write_text(format_toml(small_study()))
     assert main(["run", str(path), "--out", str(folder), "--workers", "0"], solver=solve_fake) == 0
     assert not target.exists()
     assert not any((folder / name).is_symlink() for name in names)
@@ -128,7 +128,7 @@ def test_measured_profile_from_pipe_raises(tmp_path, name):
         case_id({"profile": {"kind": "measured", "file": str(tmp_path / name)}})
 
 
-def test_measured_profile_with_too_many_points():
+def test_measured_profile_of_too_many_points_raises():
     points = [1e-8 * index for index in range(50_001)]
     with pytest.raises(InvalidInputError, match="at most 50000 points"):
         case_id({"profile": {"kind": "measured", "positions": points, "drops": points}})
@@ -136,5 +136,5 @@ def test_measured_profile_with_too_many_points():
 
 def test_byte_order_mark_is_accepted(tmp_path):
     path = tmp_path / "marked.toml"
-    path.write_text("\ufeff" + as_toml(small_study()), encoding="utf-8")
+    path.write_text("\ufeff" + format_toml(small_study()), encoding="utf-8")
     assert len(Study.from_toml(path).plan()) == 4

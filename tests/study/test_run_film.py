@@ -1,4 +1,4 @@
-"""Studies of films: parameters, rejected values, warm starts, equal numbers after interrupts and deaths of workers."""
+"""Studies of films: parameters, invalid values, warm starts, equal results after interrupts and deaths of workers."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ STUDY = Study(
 
 @pytest.fixture(scope="module")
 def films(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Two speeds between free ends, and the higher speed on a half-space."""
+    """Films at two speeds on a body with free ends, and at the higher speed on a half-space."""
     folder = tmp_path_factory.mktemp("films")
     assert run_study(STUDY, folder, workers=0, progress=False).counts == {"ok": 3}
     return open_study(folder)
 
 
-def test_case_of_a_film() -> None:
+def test_setup_of_film_has_speeds_and_lubricant() -> None:
     setup = build_setup(BASE | {"entrainment_speed": 2.0, "slide_roll_ratio": 0.1, "roughness_rms": 1e-7})
     assert setup.case.motion == Sliding(body_speed=1.9, roller_speed=2.1)
     assert setup.case.lubricant is not None
@@ -68,12 +68,12 @@ def test_case_of_a_film() -> None:
         ({"entrainment_speed": 1.0, "motion": "rolling"}, "entrainment_speed"),
     ],
 )
-def test_bad_values(changes: dict[str, Any], message: str) -> None:
+def test_invalid_film_parameter_raises(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         build_setup(BASE | changes)
 
 
-def test_dry_case_refuses_film_parameters() -> None:
+def test_film_parameter_of_dry_case_raises() -> None:
     dry_parameters = {name: value for name, value in BASE.items() if "viscosity" not in name}
     assert build_setup(dry_parameters).case.motion == Sliding()
     assert build_setup(dry_parameters).case.lubricant is None
@@ -84,7 +84,7 @@ def test_dry_case_refuses_film_parameters() -> None:
 
 
 @pytest.mark.slow
-def test_films_of_a_study(films: xr.Dataset) -> None:
+def test_warm_start_is_faster_and_within_error(films: xr.Dataset) -> None:
     fast_setup = build_setup(BASE | {"entrainment_speed": 2.0})
     cold_film = solve_film(fast_setup.case, **fast_setup.options)
     warm_film = films.sel(body="finite-length", entrainment_speed=2.0)
@@ -95,36 +95,36 @@ def test_films_of_a_study(films: xr.Dataset) -> None:
     assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
 
 
-def assert_equal_bits(folder: Path, films: xr.Dataset) -> None:
-    """Compare all that the studies hold except how long it took."""
+def assert_bit_identical(folder: Path, films: xr.Dataset) -> None:
+    """Compare two studies except the durations."""
     xr.testing.assert_identical(open_study(folder).drop_vars("seconds").load(), films.drop_vars("seconds").load())
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("finished", [1, 2])
-def test_interrupt_does_not_change_films(films: xr.Dataset, tmp_path: Path, finished: int) -> None:
-    """Within a group and between two groups."""
-    solved: list[xr.Dataset] = []
+@pytest.mark.parametrize("finished_count", [1, 2])
+def test_films_after_interrupt_are_bit_identical(films: xr.Dataset, tmp_path: Path, finished_count: int) -> None:
+    """The interrupt is within a group or between two groups."""
+    solved_films: list[xr.Dataset] = []
 
     def solve_or_fail(case: Case, **options: Any) -> xr.Dataset:
-        if len(solved) == finished:
+        if len(solved_films) == finished_count:
             raise KeyboardInterrupt
-        solved.append(solve_film(case, **options))
-        return solved[-1]
+        solved_films.append(solve_film(case, **options))
+        return solved_films[-1]
 
-    with pytest.raises(KeyboardInterrupt, match=f"{finished} of 3 cases are kept"):
+    with pytest.raises(KeyboardInterrupt, match=f"{finished_count} of 3 cases are kept"):
         run_study(STUDY, tmp_path, workers=0, progress=False, solver=solve_or_fail)
     run_study(STUDY, tmp_path, workers=0, progress=False)
-    assert_equal_bits(tmp_path, films)
+    assert_bit_identical(tmp_path, films)
 
 
-DEATH = "CONTACTSTUDY_TEST_DEATH"
-"""Environment variable with a file whose creator, a worker, dies of the film of the higher speed."""
+MARKER_VARIABLE = "CONTACTSTUDY_TEST_DEATH"
+"""Environment variable with the path of a marker file of `solve_after_death`."""
 
 
 def solve_after_death(case: Case, **options: Any) -> xr.Dataset:
-    """Solve a film; the first film of the higher speed kills its process."""
-    marker = Path(os.environ[DEATH])
+    """Solve a film; the first film of the higher speed makes the marker file and kills its process."""
+    marker = Path(os.environ[MARKER_VARIABLE])
     if case.motion.speeds is not None and case.motion.speeds.entrainment == SPEEDS[-1] and not marker.exists():
         marker.touch()
         os.kill(os.getpid(), signal.SIGKILL)
@@ -132,18 +132,18 @@ def solve_after_death(case: Case, **options: Any) -> xr.Dataset:
 
 
 @pytest.mark.slow
-def test_death_of_a_worker_does_not_change_films(
+def test_films_after_worker_death_are_bit_identical(
     films: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(DEATH, str(tmp_path / "dead"))
+    monkeypatch.setenv(MARKER_VARIABLE, str(tmp_path / "dead"))
     folder = tmp_path / "out"
     run_study(STUDY, folder, workers=1, progress=False, solver=solve_after_death)
     assert (tmp_path / "dead").exists()
-    assert_equal_bits(folder, films)
+    assert_bit_identical(folder, films)
 
 
-def test_films_of_a_group_return_whole() -> None:
-    """As one task; a second death fails the whole group."""
+def test_second_death_returns_whole_group() -> None:
+    """Films of a group are one task and fail together."""
     plan = Study(name="film", base=BASE, sweep={"max_pressure": [0.8e9, 1e9], "entrainment_speed": SPEEDS}).plan()
     tasks = Tasks(plan, [[0, 1, 2, 3]], Task(cases=(), folder=""))
     assert tasks.return_task(tasks.next_task(1), died=True) == []

@@ -26,7 +26,7 @@ def test_unguarded_script_error_contains_remedy(tmp_path: Path) -> None:
         [sys.executable, script], cwd=root, env=os.environ | {"PYTHONPATH": str(root)}, capture_output=True, text=True
     )
     assert process.returncode == 1
-    last = process.stderr.strip().splitlines()[-1]
-    assert "if __name__ == '__main__':" in last
-    assert "workers=0" in last
+    message = process.stderr.strip().splitlines()[-1]
+    assert "if __name__ == '__main__':" in message
+    assert "workers=0" in message
     assert process.stderr.count("Traceback") == 1

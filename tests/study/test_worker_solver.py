@@ -10,7 +10,7 @@ from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 
-def test_quarter_space_with_distant_roller(tmp_path):
+def test_quarter_space_study_keeps_end_distance(tmp_path):
     study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [0.0, 2.0]})
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
     dataset = open_study(tmp_path).sel(body="quarter-space")
@@ -20,7 +20,7 @@ def test_quarter_space_with_distant_roller(tmp_path):
         step = float(case["x_over_a"].diff("x_over_a").max())
         assert float(loaded_positions.min()) == pytest.approx(e_over_a + step / 2, abs=step)
         assert float(case["end_traction_residual"]) < 1e-4
-    # A sharp roller carries less at a free end than inside, where its edge is on the face.
+    # The end pressure of a sharp roller is low at a free end and high away from the free end.
     assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=0.0)) < 1.0
     assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
 
@@ -55,11 +55,11 @@ def test_study_over_end_models(tmp_path):
     assert "no free end" in dataset["message"].sel(body="half-space", model="mirror").item()
     residual = dataset["end_traction_residual"].sel(body="finite-length")
     exact_residual, single_residual, mirror_residual = (
-        float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror")
+        float(residual.sel(model=model)) for model in ("exact", "single-mirror", "mirror")
     )
     assert exact_residual < 3e-4 < single_residual < mirror_residual  # the depths begin at 0.02 a
-    ends = dataset["end_pressure_over_p0"].sel(body="finite-length").values
-    assert len({round(value, 4) for value in ends.tolist()}) == 3
+    end_pressures = dataset["end_pressure_over_p0"].sel(body="finite-length").values
+    assert len({round(pressure, 4) for pressure in end_pressures.tolist()}) == 3
 
 
 def test_number_types_have_same_identity(tmp_path):
@@ -70,15 +70,17 @@ def test_number_types_have_same_identity(tmp_path):
 
 
 def test_common_operator_is_computed_once(tmp_path, monkeypatch):
-    kernels = []
+    kernel_requests = []
     create_kernel = surface.end_kernel_of
-    monkeypatch.setattr(surface, "end_kernel_of", lambda *request: kernels.append(request) or create_kernel(*request))
-    # The friction is the outer parameter of the sweep: in this order the operators would alternate.
+    monkeypatch.setattr(
+        surface, "end_kernel_of", lambda *arguments: kernel_requests.append(arguments) or create_kernel(*arguments)
+    )
+    # The friction is the outer parameter of the sweep: solved in this order, the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
     study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}
-    assert len([term for term, *_ in kernels if term.free_ends]) == 2
-    assert len(kernels) == len(set(kernels))
+    assert len([term for term, *_ in kernel_requests if term.free_ends]) == 2
+    assert len(kernel_requests) == len(set(kernel_requests))
     assert cache.info().limit <= 2**31
 
 

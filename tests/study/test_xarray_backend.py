@@ -1,4 +1,4 @@
-"""xarray opens the folder of a study like `open_study`, and ignores files."""
+"""The backend of xarray opens the folder of a study as `open_study` does, and no files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("chunks", [None, {}])
-def test_a_folder_opens_as_a_study(folder: Path, chunks: dict[str, int] | None) -> None:
+def test_open_dataset_equals_open_study(folder: Path, chunks: dict[str, int] | None) -> None:
     xr.testing.assert_identical(xr.open_dataset(folder, chunks=chunks).load(), open_study(folder).load())
 
 

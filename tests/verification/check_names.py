@@ -1,6 +1,6 @@
-"""The list of the suite's checks, from which the tests take the names of the checks before the run.
+"""The file with the names of all checks of the suite; tests are parametrised by it.
 
-After checks were added or renamed, ``python -m tests.verification.check_names`` writes the list anew.
+``python -m tests.verification.check_names`` writes the file; necessary after a change of names.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from contactstudy.verification import Verification, suite
 
-LIST = Path(__file__).with_name("checks.csv")
+LIST_PATH = Path(__file__).with_name("checks.csv")
 
 
 class ListedCheck(NamedTuple):
@@ -27,25 +27,25 @@ class ListedCheck(NamedTuple):
         return f"{self.case}: {self.quantity}"
 
 
-def names(verification: Verification) -> list[tuple[str, str, str]]:
+def list_names(verification: Verification) -> list[tuple[str, str, str]]:
     """Group, case and quantity of every check."""
     return [(group, check.case, check.quantity) for group, checks in verification.groups.items() for check in checks]
 
 
-def read() -> list[ListedCheck]:
+def read_list() -> list[ListedCheck]:
     """All listed checks."""
-    with LIST.open(newline="") as file:
+    with LIST_PATH.open(newline="") as file:
         return [ListedCheck(**row) for row in csv.DictReader(file)]
 
 
-def write() -> None:
+def write_list() -> None:
     """Run the suite and list its checks."""
-    quick_names, full_names = (names(suite.run(level)) for level in suite.LEVELS)
-    with LIST.open("w", newline="") as file:
+    quick_names, full_names = (list_names(suite.run(level)) for level in suite.LEVELS)
+    with LIST_PATH.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(ListedCheck._fields)
         writer.writerows(("quick" if key in quick_names else "full", *key) for key in full_names)
 
 
 if __name__ == "__main__":
-    write()
+    write_list()

@@ -1,4 +1,4 @@
-"""The stored references: complete, small, and in agreement with the cases that the package states."""
+"""Stored references of finite elements: parameters, symmetry, error estimates, and size of the files."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from contactstudy.verification.problems import (
 
 
 @pytest.mark.parametrize("name", CONTACT_CASES)
-def test_stored_contacts(name: str) -> None:
-    """The stored contacts have their load, sign and symmetry, and small errors where the pressure is smooth."""
+def test_stored_contact_is_symmetric_and_accurate(name: str) -> None:
+    """The stored contact has its load, no tension, symmetry, and small errors away from the ends."""
     case, contact = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
     attributes = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
     assert attributes == [case.length, case.distance, case.crown, case.poisson]
@@ -37,8 +37,8 @@ def test_stored_contacts(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILM_CASES)
-def test_stored_films(name: str) -> None:
-    """The stored films have sign and symmetry to 1e-3, and errors far below the tolerances of the comparison."""
+def test_stored_film_is_symmetric_and_accurate(name: str) -> None:
+    """The stored film has no negative pressure, symmetry to 1e-3, and errors below 1e-3."""
     case, film = FILM_CASES[name], load_reference(FILM_FILE, name)
     assert {key: film.attrs[key] for key in vars(case)} == vars(case)
     assert float(film["pressure"].min()) >= 0
@@ -48,13 +48,13 @@ def test_stored_films(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", PASSES_CASES)
-def test_stored_passes(name: str) -> None:
-    """The stored passes have no change of volume, stresses of layers with strains xx and yy held, and small errors."""
+def test_stored_passes_keep_volume_and_are_accurate(name: str) -> None:
+    """The plastic strains keep the volume; sigma_xx follows from plane layers of zero total strains xx and yy."""
     case, reference = PASSES_CASES[name], load_reference(PASSES_FILE, name)
     attributes = [reference.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
     assert attributes == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
     assert reference.sizes["pass_number"] == case.passes
-    xx, yy, zz = (reference[f"plastic_strain_{pair}_young"] for pair in ("xx", "yy", "zz"))
+    xx, yy, zz = (reference[f"plastic_strain_{axes}_young"] for axes in ("xx", "yy", "zz"))
     assert np.abs(xx + yy + zz).max() < 1e-6
     constraint_stress = -(xx + case.poisson * yy).isel(pass_number=-1) / (1 - case.poisson**2)
     assert np.abs(reference["sigma_xx"] - constraint_stress).max() < 0.08 * np.abs(constraint_stress).max()
@@ -66,8 +66,8 @@ def test_stored_passes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LOAD_CASES)
-def test_stored_case(name: str) -> None:
-    """The stored case has free ends, symmetry, and a small error estimate."""
+def test_stored_stress_has_free_ends_and_symmetry(name: str) -> None:
+    """The stored stress has free ends, symmetry, and a small error estimate."""
     case, stress = LOAD_CASES[name], load_reference(STRESS_FILE, name)
     error = stress.attrs["error_estimate"]
     assert error < 5e-4
@@ -82,25 +82,25 @@ def test_stored_case(name: str) -> None:
     if case.symmetric:
         for component in ref.COMPONENTS:
             sign = -1 if component in ("tau_xy", "tau_xz") else 1
-            ends = stress[component].sel(x=case.length) - sign * stress[component].sel(x=0)
-            assert np.abs(ends).max() < error, component
-    top = stress.sigma_zz.sel(z=0.05) + case.pressure(stress.x.values, stress.y.values)
-    assert np.abs(top).max() < 0.03
+            end_difference = stress[component].sel(x=case.length) - sign * stress[component].sel(x=0)
+            assert np.abs(end_difference).max() < error, component
+    surface_residual = stress.sigma_zz.sel(z=0.05) + case.pressure(stress.x.values, stress.y.values)
+    assert np.abs(surface_residual).max() < 0.03
 
 
-def test_stored_friction_is_a_superposition() -> None:
-    """The part even in y of the sliding case equals the frictionless case (odd, of `tau_xy` and `tau_yz`)."""
-    frictionless, sliding = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
-    mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
+def test_even_part_of_stored_sliding_stress_is_frictionless() -> None:
+    """The part even in y of the sliding case equals the frictionless case; for `tau_xy` and `tau_yz`, the odd part."""
+    frictionless_stress, sliding_stress = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
+    mirrored_sliding = sliding_stress.assign_coords(y=-sliding_stress.y).sortby("y")
     for component in ref.COMPONENTS:
         sign = -1 if component in ("tau_xy", "tau_yz") else 1
-        is_even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=frictionless.y)
-        assert np.abs(is_even - frictionless[component]).max() < 1e-5, component
-    assert np.abs(sliding.tau_xy).max() > 0.05
+        even_part = 0.5 * (sliding_stress[component] + sign * mirrored_sliding[component]).sel(y=frictionless_stress.y)
+        assert np.abs(even_part - frictionless_stress[component]).max() < 1e-5, component
+    assert np.abs(sliding_stress.tau_xy).max() > 0.05
 
 
 @pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])
-def test_files(name: str) -> None:
+def test_stored_files_are_small_and_contain_command(name: str) -> None:
     assert data_file(name).stat().st_size < 300_000
     attributes = xr.load_dataset(data_file(name)).attrs
     assert "scikit-fem" in attributes["software"]

@@ -1,4 +1,4 @@
-"""Output of the suite; `test_suite_checks` makes its checks."""
+"""Output of the suite; `test_suite_checks` runs its checks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactstudy.verification import Verification, suite, verify
 from contactstudy.verification.problems import Check, Curve, Reference
 
 
-def fake() -> Iterator[Check]:
+def make_fake_checks() -> Iterator[Check]:
     """A group of two checks; one check fails."""
     x = np.linspace(0, 1, 5)
     yield Reference("good | case", "Hertz").compare(
@@ -33,11 +33,11 @@ def fake() -> Iterator[Check]:
 
 @pytest.fixture
 def small_suite(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (fake(),)})
+    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (make_fake_checks(),)})
 
 
 @pytest.mark.usefixtures("small_suite")
-def test_command_with_a_failed_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_failed_check_returns_code_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", "--out", str(tmp_path / "out")]) == 1
     output = capsys.readouterr().out
     assert re.search(r"^ok .* good \| case: pressure \[Hertz\]$", output, re.MULTILINE)
@@ -57,11 +57,11 @@ def test_command_with_a_failed_check(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 @pytest.mark.usefixtures("small_suite")
 def test_command_succeeds_when_all_checks_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (itertools.islice(fake(), 1),)})
+    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (itertools.islice(make_fake_checks(), 1),)})
     assert main(["verify", "--out", str(tmp_path)]) == 0
 
 
-def test_unit_problems_raise_no_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_suite_with_unit_properties_raises_no_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     """Material properties of 1 are unusual in SI units, but not in the suite's units."""
     monkeypatch.setattr(suite, "GROUPS", {"heat": suite.GROUPS["heat"]})
     with warnings.catch_warnings():
@@ -74,12 +74,12 @@ def test_empty_verification_fails() -> None:
 
 
 @pytest.mark.parametrize("level", ["thorough", "", None, 2])
-def test_unknown_levels_are_errors(level: object) -> None:
+def test_unknown_level_raises(level: object) -> None:
     with pytest.raises(InvalidInputError, match="level"):
         verify(level)  # type: ignore[arg-type]
 
 
-def test_impossible_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_file_as_output_folder_returns_code_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["verify", "--out", str(tmp_path / "file")]) == 2
     captured = capsys.readouterr()
@@ -87,7 +87,7 @@ def test_impossible_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert captured.out == ""
 
 
-def test_command_accepts_levels(capsys: pytest.CaptureFixture[str]) -> None:
+def test_unknown_level_on_command_line_raises(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["verify", "--level", "thorough"])
     assert "quick" in capsys.readouterr().err

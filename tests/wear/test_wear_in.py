@@ -33,55 +33,59 @@ def create_case(length=0.6e-3, *, model="exact", **roller):
 
 
 @pytest.fixture(scope="module")
-def sharp():
-    """A rigid roller with sharp ends inside the face, and coarse cells."""
+def sharp_roller():
+    """A rigid roller with sharp ends away from the ends of the body, and a coarse grid."""
     case = create_case()
     return case, choose_grid(case, cells_x=3, cells_y=8)
 
 
 @pytest.fixture(scope="module")
-def worn(sharp):
-    case, grid = sharp
+def worn_result(sharp_roller):
+    case, grid = sharp_roller
     return wear_in(case, K, distance=1e5, grid=grid)
 
 
-def load_ratio(line_load):
-    loaded = line_load[line_load > 0]
-    return loaded.max() / loaded.min()
+def compute_ratio(line_load):
+    is_loaded = line_load[line_load > 0]
+    return is_loaded.max() / is_loaded.min()
 
 
-def test_volume_obeys_archard_to_rounding(sharp, worn):
-    expected = K * sharp[0].normal_load * worn.distance.values
-    assert worn.worn_volume.values == pytest.approx(expected, rel=1e-12)
-    assert float(worn.volume_error) < 1e-12
-    volume = 2 * np.pi * 5e-3 * (worn.wear_depth.sum("x") * sharp[1].dx)
-    assert worn.worn_volume.values == pytest.approx(volume.values, rel=1e-12)
+def test_volume_obeys_archard_to_rounding(sharp_roller, worn_result):
+    expected = K * sharp_roller[0].normal_load * worn_result.distance.values
+    assert worn_result.worn_volume.values == pytest.approx(expected, rel=1e-12)
+    assert float(worn_result.volume_error) < 1e-12
+    volume = 2 * np.pi * 5e-3 * (worn_result.wear_depth.sum("x") * sharp_roller[1].dx)
+    assert worn_result.worn_volume.values == pytest.approx(volume.values, rel=1e-12)
 
 
-def test_constant_slip_makes_the_load_uniform(worn):
-    spreads = [load_ratio(state) for state in worn.line_load.values]
-    assert spreads[0] > 2
-    assert (np.diff(spreads) < 1e-6).all()
-    assert spreads[-1] < 1.001
+def test_constant_slip_makes_the_load_uniform(worn_result):
+    load_ratios = [compute_ratio(line_load) for line_load in worn_result.line_load.values]
+    assert load_ratios[0] > 2
+    assert (np.diff(load_ratios) < 1e-6).all()
+    assert load_ratios[-1] < 1.001
 
 
-def test_step_sizes(worn):
-    assert worn.sizes["distance"] < 30
-    assert (np.diff(worn.distance.values)[:-2] > 0).all()
-    assert float(worn.next_step[-1]) > 100 * float(worn.next_step[0])
+def test_wear_steps_increase(worn_result):
+    assert worn_result.sizes["distance"] < 30
+    assert (np.diff(worn_result.distance.values)[:-2] > 0).all()
+    assert float(worn_result.next_step[-1]) > 100 * float(worn_result.next_step[0])
 
 
 @pytest.mark.slow
-def test_wear_error_against_small_steps(sharp):
-    case, grid = sharp
-    coarse, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 1e-4))
-    difference = float(abs(coarse.wear_depth - fine.wear_depth).isel(distance=-1).max() / fine.wear_depth.max())
-    assert difference < 2 * float(coarse.wear_error[-1])
+def test_wear_error_bounds_difference_from_small_steps(sharp_roller):
+    case, grid = sharp_roller
+    coarse_wear, fine_wear = (
+        wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 1e-4)
+    )
+    difference = float(
+        abs(coarse_wear.wear_depth - fine_wear.wear_depth).isel(distance=-1).max() / fine_wear.wear_depth.max()
+    )
+    assert difference < 2 * float(coarse_wear.wear_error[-1])
     assert difference < 0.03
-    assert difference > 5 * float(fine.wear_error[-1])
+    assert difference > 5 * float(fine_wear.wear_error[-1])
 
 
-def test_uniform_wear():
+def test_wear_of_uniform_contact_equals_archard():
     case = create_case(length=0.4e-3, model="mirror")
     grid = choose_grid(case, cells_x=2, cells_y=8)
     result = wear_in(case, K, distance=[0.0, 1e5], grid=grid, circumference=0.01)
@@ -90,54 +94,54 @@ def test_uniform_wear():
     assert result.pressure.values[-1] == pytest.approx(result.pressure.values[0], abs=1e-4 * 1.5e9)
 
 
-def test_uniform_pressure_between_mirrors():
+def test_wear_between_mirrors_makes_pressure_uniform():
     case = create_case(length=0.4e-3, model="mirror", profile=FullCrown(crown_radius=0.05))
     result = wear_in(case, K, distance=[0.0, 1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
     peaks = result.pressure.max("y").values
-    assert load_ratio(peaks[0]) > 1.05
-    assert load_ratio(peaks[1]) < 1.002
+    assert compute_ratio(peaks[0]) > 1.05
+    assert compute_ratio(peaks[1]) < 1.002
 
 
-def test_continuation(sharp, worn):
-    case, grid = sharp
+def test_continued_wear_equals_uninterrupted_wear(sharp_roller, worn_result):
+    case, grid = sharp_roller
     with pytest.warns(ConvergenceWarning, match="max_steps = 4"):
         first_result = wear_in(case, K, distance=1e5, grid=grid, max_steps=4)
     assert first_result.sizes["distance"] == 5
     second_result = wear_in(case, K, distance=1e5, after=first_result)
     assert float(second_result.distance[0]) == float(first_result.distance[-1])
-    assert second_result.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
+    assert second_result.wear_depth.values[-1] == pytest.approx(worn_result.wear_depth.values[-1], rel=1e-4)
     assert float(second_result.volume_error) < 1e-12
     # The continuation keeps the previous error.
     assert float(second_result.wear_error[0]) == pytest.approx(float(first_result.wear_error[-1]))
-    assert float(second_result.wear_error[-1]) == pytest.approx(float(worn.wear_error[-1]), rel=0.02)
+    assert float(second_result.wear_error[-1]) == pytest.approx(float(worn_result.wear_error[-1]), rel=0.02)
 
 
 @pytest.mark.slow
-def test_load_position_off_the_middle(sharp):
+def test_wear_under_eccentric_load_has_linear_line_load(sharp_roller):
     """The roller wears unevenly and tilts with the wear."""
-    case, grid = sharp
-    eccentric = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
-    result = wear_in(eccentric, K, distance=[1e5], grid=grid)
+    case, grid = sharp_roller
+    eccentric_case = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
+    result = wear_in(eccentric_case, K, distance=[1e5], grid=grid)
     load, x = result.line_load.values[-1], grid.x
-    loaded = load > 0
-    length = grid.dx * loaded.sum()
+    is_loaded = load > 0
+    length = grid.dx * is_loaded.sum()
     # w = W / L (1 + 12 e x' / L**2)
-    lever = 12 * (0.32e-3 - 0.3e-3) * (x[loaded] - 0.3e-3) / (length**2 - grid.dx**2)
-    expected = eccentric.normal_load / length * (1 + lever)
-    assert load[loaded] == pytest.approx(expected, rel=2e-3)
+    load_factor = 12 * (0.32e-3 - 0.3e-3) * (x[is_loaded] - 0.3e-3) / (length**2 - grid.dx**2)
+    expected = eccentric_case.normal_load / length * (1 + load_factor)
+    assert load[is_loaded] == pytest.approx(expected, rel=2e-3)
     assert float(result.volume_error) < 1e-9
 
 
-def test_quarter_space():
+def test_wear_on_quarter_space_makes_load_uniform():
     body = QuarterSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9, end_distance=0.05e-3)
     result = wear_in(case, K, distance=[1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
-    assert load_ratio(result.line_load.values[-1]) < 1.001
+    assert compute_ratio(result.line_load.values[-1]) < 1.001
     assert float(result.volume_error) < 1e-12
 
 
 @pytest.mark.slow
-def test_elastic_roller_with_coupled_friction():
+def test_wear_of_coupled_friction_by_work_is_friction_times_slip():
     case = Case(
         body=FiniteLengthSpace(length=0.6e-3, material=STEEL),
         roller=Roller(radius=5e-3, length=0.4e-3, material=STEEL),
@@ -146,13 +150,13 @@ def test_elastic_roller_with_coupled_friction():
         coupled=True,
     )
     grid = choose_grid(case, cells_x=2, cells_y=6)
-    by_slip, by_work = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
-    assert float(by_work.worn_volume[-1]) == pytest.approx(0.2 * float(by_slip.worn_volume[-1]), rel=1e-12)
-    assert load_ratio(by_slip.line_load.values[-1]) < load_ratio(by_slip.line_load.values[0])
+    slip_result, work_result = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
+    assert float(work_result.worn_volume[-1]) == pytest.approx(0.2 * float(slip_result.worn_volume[-1]), rel=1e-12)
+    assert compute_ratio(slip_result.line_load.values[-1]) < compute_ratio(slip_result.line_load.values[0])
 
 
 @pytest.fixture(scope="module")
-def rolling():
+def rolling_contact():
     case = Case(
         body=HalfSpace(material=STEEL),
         roller=Roller(radius=5e-3, length=0.4e-3, material=STEEL, profile=FullCrown(crown_radius=0.05)),
@@ -163,42 +167,42 @@ def rolling():
     return case, choose_grid(case, cells_x=2, cells_y=6, window=2.5)
 
 
-def test_rolling_by_slip(rolling):
-    case, grid = rolling
+def test_rolling_wear_by_slip_equals_integral(rolling_contact):
+    case, grid = rolling_contact
     result = solve(case, grid, stresses=False)
-    worn = wear_in(case, K, distance=[100.0], grid=grid)
-    rate = float((result.pressure * np.hypot(result.slip_x, result.slip_y)).sum()) * grid.cell_area
-    assert float(worn.worn_volume[-1]) == pytest.approx(K * rate * 100.0, rel=2e-3)
+    worn_result = wear_in(case, K, distance=[100.0], grid=grid)
+    wear_rate = float((result.pressure * np.hypot(result.slip_x, result.slip_y)).sum()) * grid.cell_area
+    assert float(worn_result.worn_volume[-1]) == pytest.approx(K * wear_rate * 100.0, rel=2e-3)
 
 
 @pytest.mark.slow
-def test_steady_wear_in_rolling(rolling):
-    case, grid = rolling
+def test_rolling_wear_becomes_uniform(rolling_contact):
+    case, grid = rolling_contact
     result = wear_in(case, 1e-14, distance=[10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
     assert float(result.volume_error) < 0.02
-    loaded = result.line_load.values[0] > 0
-    depth = result.wear_depth.values[:, loaded]
-    # The roller slips more at low loads: at first the mid-length wears least.
-    assert load_ratio(depth[1]) > 1.1
-    assert load_ratio(depth[3] - depth[2]) < 1.01
+    is_loaded = result.line_load.values[0] > 0
+    depth = result.wear_depth.values[:, is_loaded]
+    # The slip is larger at low line loads, so that the middle wears least initially.
+    assert compute_ratio(depth[1]) > 1.1
+    assert compute_ratio(depth[3] - depth[2]) < 1.01
 
 
-def test_worn_profile_carries_the_worn_load(sharp, worn, tmp_path):
-    case, grid = sharp
-    distance = float(worn.distance[6])
-    profile = worn_profile(case, worn, distance)
+def test_worn_profile_has_line_load_of_wear(sharp_roller, worn_result, tmp_path):
+    case, grid = sharp_roller
+    distance = float(worn_result.distance[6])
+    profile = worn_profile(case, worn_result, distance)
     worn_case = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
     result = solve(worn_case, grid, stresses=False)
     load = grid.dy * result.pressure.sum("y").values
-    assert load == pytest.approx(worn.line_load.values[6], abs=1e-3 * load.max())
-    file = tmp_path / "worn.nc"
-    worn.to_netcdf(file)
-    with xr.open_dataset(file) as stored_result:
+    assert load == pytest.approx(worn_result.line_load.values[6], abs=1e-3 * load.max())
+    path = tmp_path / "worn.nc"
+    worn_result.to_netcdf(path)
+    with xr.open_dataset(path) as stored_result:
         assert worn_profile(case, stored_result, distance) == profile
         assert stored_result.profile_drop.attrs["units"] == "m"
 
 
-def test_worn_profile_of_an_overhanging_roller():
+def test_worn_profile_beyond_body_is_zero():
     body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, end_distance=-0.05e-3)
     grid = choose_grid(case, cells_x=3, cells_y=8)
@@ -210,7 +214,7 @@ def test_worn_profile_of_an_overhanging_roller():
 
 
 @pytest.mark.slow
-def test_mean_depths_on_columns():
+def test_gap_of_worn_profile_contains_mean_depths():
     case = create_case(profile=FullCrown(crown_radius=0.05))
     result = wear_in(case, K, distance=[1e3])
     edges = np.append(result.x_bounds.values[:, 0], result.x_bounds.values[-1, 1])
@@ -221,13 +225,13 @@ def test_mean_depths_on_columns():
         max_pressure=1.5e9,
     )
     expected_gap = (case.gap(grid) + result.wear_depth.values[-1][:, None])[:, 0]
-    loaded = np.isfinite(expected_gap)
-    assert worn_case.gap(grid)[loaded, 0] == pytest.approx(
-        expected_gap[loaded], abs=1e-5 * result.wear_depth.values.max()
+    is_loaded = np.isfinite(expected_gap)
+    assert worn_case.gap(grid)[is_loaded, 0] == pytest.approx(
+        expected_gap[is_loaded], abs=1e-5 * result.wear_depth.values.max()
     )
 
 
-def test_worn_profile_with_infinite_end_drop():
+def test_worn_profile_of_infinite_end_drop_is_sum():
     profile = Lundberg(amplitude=0.2e-6)
     assert np.isinf(profile.drop(np.array([0.2e-3]), 0.4e-3)).all()
     case = create_case(profile=profile)
@@ -256,57 +260,59 @@ def test_worn_profile_with_infinite_end_drop():
         ({"grid": "fine"}, "grid"),
     ],
 )
-def test_bad_input(sharp, changes, message):
-    case, grid = sharp
+def test_invalid_argument_raises(sharp_roller, changes, message):
+    case, grid = sharp_roller
     arguments = {"coefficient": K, "distance": 1e3, "grid": grid} | changes
     with pytest.raises(InvalidInputError, match=message):
         wear_in(case, arguments.pop("coefficient"), distance=arguments.pop("distance"), **arguments)
 
 
-def test_bad_cases_and_states(sharp, worn, rolling):
-    case, grid = sharp
+def test_invalid_case_or_continuation_raises(sharp_roller, worn_result, rolling_contact):
+    case, grid = sharp_roller
     with pytest.raises(InvalidInputError, match=r"case\.motion"):
         wear_in(Case(body=case.body, roller=case.roller, max_pressure=1e9, motion=Shift(y=1e-6)), K, distance=1.0)
-    coupled = Case(body=case.body, roller=case.roller, max_pressure=1e9, motion=Rolling(), coupled=True, friction=0.1)
+    coupled_case = Case(
+        body=case.body, roller=case.roller, max_pressure=1e9, motion=Rolling(), coupled=True, friction=0.1
+    )
     with pytest.raises(InvalidInputError, match=r"case\.coupled"):
-        wear_in(coupled, K, distance=1.0)
+        wear_in(coupled_case, K, distance=1.0)
     with pytest.raises(InvalidInputError, match="grid"):
-        wear_in(case, K, distance=2e5, after=worn, grid=grid)
+        wear_in(case, K, distance=2e5, after=worn_result, grid=grid)
     with pytest.raises(InvalidInputError, match="where the wear begins"):
-        wear_in(case, K, distance=1e4, after=worn)
+        wear_in(case, K, distance=1e4, after=worn_result)
     with pytest.raises(InvalidInputError, match=r"distance = 0\.5"):
-        worn_profile(case, worn, 0.5)
+        worn_profile(case, worn_result, 0.5)
     with pytest.raises(InvalidInputError, match="wear_depth"):
         worn_profile(case, xr.Dataset())
 
 
-def test_continuation_under_another_load(sharp, worn):
-    case, _ = sharp
+def test_wear_continues_under_another_load(sharp_roller, worn_result):
+    case, _ = sharp_roller
     light_case = replace(case, max_pressure=None, load=0.5 * case.normal_load)
     distances = xr.DataArray([100.0, 150.0], dims="way", attrs={"units": "km"})
-    result = wear_in(light_case, K, distance=distances, after=worn)
+    result = wear_in(light_case, K, distance=distances, after=worn_result)
     assert result.distance.values.tolist() == [1e5, 1.5e5]
     added_volume = result.worn_volume[-1] - result.worn_volume[0]
     assert float(added_volume) == pytest.approx(K * light_case.normal_load * 5e4, rel=1e-6)
     smaller_case = replace(case, roller=replace(case.roller, radius=4e-3))
     with pytest.raises(InvalidInputError, match=r"after = 'solved with roller.radius = 0.005'"):
-        wear_in(smaller_case, K, distance=2e5, after=worn)
+        wear_in(smaller_case, K, distance=2e5, after=worn_result)
     with pytest.raises(InvalidInputError, match=r"worn = 'solved with end_distance = 0.0001'"):
-        worn_profile(replace(case, end_distance=0.0), worn)
+        worn_profile(replace(case, end_distance=0.0), worn_result)
 
 
-def test_finite_drop_at_both_ends():
+def test_worn_profile_is_finite_at_both_ends():
     """75 cells on 0.6 mm have midpoints at the ends of the roller."""
     case = create_case()
-    worn = wear_in(
+    worn_result = wear_in(
         case,
         K,
         distance=[0.0, 1e3],
         grid=Grid(x_range=(0.0, 0.6e-3), y_range=(-0.13e-3, 0.13e-3), cells_x=75, cells_y=16),
     )
-    loaded = (worn.pressure > 0).any(("distance", "y"))
-    assert np.isfinite(worn.profile_drop.isel(distance=-1)).where(loaded, True).all()
-    np.testing.assert_array_equal(np.isfinite(worn.profile_drop), np.isfinite(worn.profile_drop)[:, ::-1])
+    is_loaded = (worn_result.pressure > 0).any(("distance", "y"))
+    assert np.isfinite(worn_result.profile_drop.isel(distance=-1)).where(is_loaded, True).all()
+    np.testing.assert_array_equal(np.isfinite(worn_result.profile_drop), np.isfinite(worn_result.profile_drop)[:, ::-1])
 
 
 @pytest.mark.slow
@@ -315,14 +321,14 @@ def test_wear_by_slip_equals_wear_by_work() -> None:
     friction = 0.2
     body = FiniteLengthSpace(length=0.6e-3, material=Material(210e9, 0.3))
     roller = Roller(radius=5e-3, length=0.5e-3, profile=Cylinder(fillet_radius=0.1e-3))
-    smooth = Case(body=body, roller=roller, max_pressure=1.5e9)
-    creepage = 0.1 * friction * smooth.hertz_half_width / 5e-3
-    case = replace(smooth, friction=friction, motion=Rolling(longitudinal_creepage=creepage))
-    by_slip, by_work = (
+    frictionless_case = Case(body=body, roller=roller, max_pressure=1.5e9)
+    creepage = 0.1 * friction * frictionless_case.hertz_half_width / 5e-3
+    case = replace(frictionless_case, friction=friction, motion=Rolling(longitudinal_creepage=creepage))
+    slip_result, work_result = (
         float(wear_in(case, coefficient, distance=[0.0, 10.0], law=law).worn_volume[-1])
         for law, coefficient in (("slip", 1e-17), ("work", 1e-17 / friction))
     )
-    assert by_slip == pytest.approx(by_work, rel=1e-3)
+    assert slip_result == pytest.approx(work_result, rel=1e-3)
 
 
 @pytest.mark.slow
@@ -333,6 +339,8 @@ def test_rolling_window_widens_until_it_contains_the_contact():
     case = Case(body=HalfSpace(material=STEEL), roller=roller, load=1.0, friction=0.3, motion=motion)
     with pytest.raises(WindowError):
         wear_in(case, K, distance=1.0, grid=choose_grid(case))
-    worn = wear_in(case, K, distance=1.0)
-    assert bool(worn.converged)
-    assert float(worn.line_load.isel(distance=-1).sum() * worn.x.diff("x")[0]) == pytest.approx(1.0, rel=1e-6)
+    worn_result = wear_in(case, K, distance=1.0)
+    assert bool(worn_result.converged)
+    assert float(worn_result.line_load.isel(distance=-1).sum() * worn_result.x.diff("x")[0]) == pytest.approx(
+        1.0, rel=1e-6
+    )

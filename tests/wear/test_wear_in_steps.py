@@ -1,4 +1,4 @@
-"""Failing steps are shortened, down to a least length."""
+"""Wear steps without convergence are shortened, down to a shortest length."""
 
 from dataclasses import replace
 
@@ -24,32 +24,34 @@ def integrator():
     )
 
 
-def initial_state(integrator: WearIntegrator, step: float) -> Wear:
-    start = integrator.initial_state(0.0, np.zeros(integrator.shape.grid.cells_x), 0.0)
-    return start._replace(next_step=step)
+def make_initial_state(integrator: WearIntegrator, step: float) -> Wear:
+    initial_state = integrator.initial_state(0.0, np.zeros(integrator.shape.grid.cells_x), 0.0)
+    return initial_state._replace(next_step=step)
 
 
-def test_failed_contact_shortens_the_step(integrator, monkeypatch):
-    start = initial_state(integrator, 300.0)
-    solve = WearIntegrator.solve_contact
+def test_contact_without_convergence_shortens_step(integrator, monkeypatch):
+    initial_state = make_initial_state(integrator, 300.0)
+    original_solve = WearIntegrator.solve_contact
     max_length = 50.0
 
-    def solve_short_steps(contact, depth, compliance, start):
-        result = solve(contact, depth, compliance, start)
+    def solve_short_steps(contact, depth, compliance, initial_state):
+        result = original_solve(contact, depth, compliance, initial_state)
         return replace(result, converged=compliance.max() < integrator.rate * max_length)
 
     monkeypatch.setattr(WearIntegrator, "solve_contact", solve_short_steps)
-    states = list(integrator.integrate(start, 300.0))
+    states = list(integrator.integrate(initial_state, 300.0))
     assert states[-1].distance == 300.0
     assert states[-1].converged
     assert len(states) > 2
 
 
-def test_shortest_step_without_convergence(integrator, monkeypatch):
-    start = initial_state(integrator, 1.0)
-    solve = WearIntegrator.solve_contact
-    monkeypatch.setattr(WearIntegrator, "solve_contact", lambda *arguments: replace(solve(*arguments), converged=False))
-    states = integrator.integrate(start, 1.0)
+def test_shortest_step_continues_without_convergence(integrator, monkeypatch):
+    initial_state = make_initial_state(integrator, 1.0)
+    original_solve = WearIntegrator.solve_contact
+    monkeypatch.setattr(
+        WearIntegrator, "solve_contact", lambda *arguments: replace(original_solve(*arguments), converged=False)
+    )
+    states = integrator.integrate(initial_state, 1.0)
     state = next(states)
     assert 0 < state.distance < 1e-5
     assert not state.converged

@@ -1,4 +1,4 @@
-"""The certificate states each violation of a contact's conditions separately, over the violation's scale."""
+"""The certificate contains each violation of the conditions of contact over its scale."""
 
 from __future__ import annotations
 
@@ -20,36 +20,36 @@ GRID = Grid(x_range=(0.0, 2e-5), y_range=(0.0, 3e-4), cells_x=1, cells_y=3)  # c
 BODY = HalfSpace(material=Material(210e9, 0.3))
 
 
-def certificate(opening: list[float], load: float | None = 5.0) -> Certificate:
+def make_certificate(gap_ratio: list[float], load: float | None = 5.0) -> Certificate:
     """Certificate of a contact with a gap `opening` over the variation of the displacement."""
-    gap = VARIATION * np.array([opening])
+    gap = VARIATION * np.array([gap_ratio])
     shape = Shape(BODY, GRID, ArrayKey(gap), PrescribedLoad(load))
     return certify(shape, PRESSURE, gap, DISPLACEMENT, TOLERANCE)
 
 
 def test_exact_contact_has_no_violations() -> None:
-    assert list(asdict(certificate([0.3, 0.0, 0.0])).values()) == pytest.approx([0.0] * 4, abs=1e-15)
-    assert certificate([0.3, 0.0, 0.0]).holds(TOLERANCE)
-    assert certificate([np.inf, 0.0, 0.0]).holds(TOLERANCE)
+    assert list(asdict(make_certificate([0.3, 0.0, 0.0])).values()) == pytest.approx([0.0] * 4, abs=1e-15)
+    assert make_certificate([0.3, 0.0, 0.0]).holds(TOLERANCE)
+    assert make_certificate([np.inf, 0.0, 0.0]).holds(TOLERANCE)
 
 
-@pytest.mark.parametrize("opening", [[0.3, 2e-3, 0.0], [0.3, -2e-3, 0.0], [-2e-3, 0.0, 1e-3]])
-def test_gaps_and_overlaps_are_violations(opening: list[float]) -> None:
-    assert certificate(opening).penetration_error == pytest.approx(2e-3)
-    assert not certificate(opening).holds(TOLERANCE)
+@pytest.mark.parametrize("gap_ratio", [[0.3, 2e-3, 0.0], [0.3, -2e-3, 0.0], [-2e-3, 0.0, 1e-3]])
+def test_gaps_and_overlaps_are_violations(gap_ratio: list[float]) -> None:
+    assert make_certificate(gap_ratio).penetration_error == pytest.approx(2e-3)
+    assert not make_certificate(gap_ratio).holds(TOLERANCE)
 
 
 def test_open_pressure_begins_beyond_tolerances() -> None:
     for factor, error in ((0.5, 0.0), (1.5, 0.25)):
-        opening = [0.3, factor * OPEN_TOLERANCES * TOLERANCE, 0.0]
-        assert certificate(opening).open_pressure_error == pytest.approx(error)
-    assert not certificate([0.3, 1.5 * OPEN_TOLERANCES * TOLERANCE, 0.0]).holds(TOLERANCE)
+        gap_ratio = [0.3, factor * OPEN_TOLERANCES * TOLERANCE, 0.0]
+        assert make_certificate(gap_ratio).open_pressure_error == pytest.approx(error)
+    assert not make_certificate([0.3, 1.5 * OPEN_TOLERANCES * TOLERANCE, 0.0]).holds(TOLERANCE)
 
 
 def test_load_error_is_relative_to_load() -> None:
-    assert certificate([0.3, 0.0, 0.0], load=4.0).load_error == pytest.approx(0.25)
-    assert certificate([0.3, 0.0, 0.0], load=6.25).load_error == pytest.approx(-0.2)
-    assert certificate([0.3, 0.0, 0.0], load=None).load_error == 0.0
+    assert make_certificate([0.3, 0.0, 0.0], load=4.0).load_error == pytest.approx(0.25)
+    assert make_certificate([0.3, 0.0, 0.0], load=6.25).load_error == pytest.approx(-0.2)
+    assert make_certificate([0.3, 0.0, 0.0], load=None).load_error == 0.0
 
 
 def test_position_error_is_relative_to_contact_length() -> None:
@@ -69,7 +69,7 @@ def test_position_error_is_relative_to_contact_length() -> None:
 @pytest.mark.parametrize("name", ["load_error", "penetration_error", "open_pressure_error", "load_position_error"])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_certificate_fails_beyond_bound(name: str, sign: int) -> None:
-    complete = asdict(certificate([0.3, 0.0, 0.0]))
+    exact_values = asdict(make_certificate([0.3, 0.0, 0.0]))
     bound = CONVERGED_TOLERANCES * TOLERANCE
-    assert Certificate(**(complete | {name: 0.9 * sign * bound})).holds(TOLERANCE)
-    assert not Certificate(**(complete | {name: 1.1 * sign * bound})).holds(TOLERANCE)
+    assert Certificate(**(exact_values | {name: 0.9 * sign * bound})).holds(TOLERANCE)
+    assert not Certificate(**(exact_values | {name: 1.1 * sign * bound})).holds(TOLERANCE)

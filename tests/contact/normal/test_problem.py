@@ -47,95 +47,103 @@ class CountingOperator:
         return self.compute_displacement.coarse
 
 
-def ball(grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, deep: float = 0.0) -> ContactProblem:
-    gap = 0.05 * ((grid.x[:, None] - 0.1) ** 2 + grid.y**2) - deep
-    total = None if load is None else load / grid.cell_area
+def make_ball_problem(
+    grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, approach: float = 0.0
+) -> ContactProblem:
+    gap = 0.05 * ((grid.x[:, None] - 0.1) ** 2 + grid.y**2) - approach
+    total_pressure = None if load is None else load / grid.cell_area
     return ContactProblem(
-        grid=grid, gap=gap, resultants=Resultants(total), friction=friction, tolerance=1e-6, max_iterations=500
+        grid=grid, gap=gap, resultants=Resultants(total_pressure), friction=friction, tolerance=1e-6, max_iterations=500
     )
 
 
 GRID = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=24, cells_y=20)
 UNEQUAL_COLUMNS = Grid.between(np.cumsum([-1.5, 0.1, 0.3, 0.4, 0.2, 0.1, 0.3, 0.6, 1.0]), (-1.5, 1.5), 20)
-GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)]), (-1.5, 1.5), 20)
+GRADED_GRID = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)]), (-1.5, 1.5), 20)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.4])
-@pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
+@pytest.mark.parametrize("grid", [GRID, GRADED_GRID], ids=["uniform", "graded"])
 def test_applications_are_counted(grid: Grid, friction: float) -> None:
     operator = CountingOperator(grid)
-    computed = solve_problem(operator, ball(grid, friction=friction))
+    computed = solve_problem(operator, make_ball_problem(grid, friction=friction))
     assert computed.converged
     assert computed.applications == operator.application_count
 
 
-def test_overflow_of_the_first_round_is_not_converged() -> None:
-    """Two resultants that no pressure has let the iteration overflow."""
+def test_overflow_in_first_round_is_not_converged() -> None:
+    """No pressure has these two resultants, so the iteration overflows."""
     lever = np.where(GRID.x[:, None] > 0.4, 1.0, 1e-300)
-    problem = ball(GRID, friction=0.4)
+    problem = make_ball_problem(GRID, friction=0.4)
     with np.errstate(all="ignore"):
         computed = solve_problem(CountingOperator(GRID), replace(problem, resultants=Resultants(1e300, lever)))
     assert not computed.converged
 
 
-def test_coupled_rounds_end_without_bending_change() -> None:
+def test_coupled_pressure_equals_next_round() -> None:
     """The pressure under its own friction equals the pressure of the next round, within the tolerance."""
-    request = ball(GRID, friction=0.4)
+    request = make_ball_problem(GRID, friction=0.4)
     operator = CountingOperator(GRID)
     computed = solve_problem(operator, request)
     friction_displacement = operator({Load.ALONG_Y: request.friction * computed.pressure})
-    repeated = solve_normal(operator, replace(request, gap=request.gap + friction_displacement, tolerance=1e-10))
-    assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
+    repeated_solution = solve_normal(
+        operator, replace(request, gap=request.gap + friction_displacement, tolerance=1e-10)
+    )
+    assert computed.pressure == pytest.approx(repeated_solution.pressure, abs=3e-6 * repeated_solution.pressure.max())
     uncoupled_iterate = solve_normal(operator, request)
-    assert np.abs(uncoupled_iterate.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
+    assert (
+        np.abs(uncoupled_iterate.pressure - repeated_solution.pressure).max() > 1e-2 * repeated_solution.pressure.max()
+    )
 
 
 def test_halved_cells_are_linear_between_centres() -> None:
     cell_values = np.random.default_rng(0).standard_normal((5, 3))
-    fine = (np.arange(10) + 0.5) / 2 - 0.5
+    fine_positions = (np.arange(10) + 0.5) / 2 - 0.5
     assert halve_cells(cell_values, 0) == pytest.approx(
-        interpolate_columns(cell_values, np.arange(5.0), fine), abs=1e-12
+        interpolate_columns(cell_values, np.arange(5.0), fine_positions), abs=1e-12
     )
 
 
-def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
+def compute_lever(grid: Grid, position: float) -> tuple[FloatArray, float]:
     """Lever about a position, over the largest arm, and the largest arm."""
     arm = grid.x[:, None] - position
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
 
-@pytest.mark.parametrize("grid", [GRID, GRADED, UNEQUAL_COLUMNS], ids=["uniform", "graded", "unlike neighbours"])
+@pytest.mark.parametrize("grid", [GRID, GRADED_GRID, UNEQUAL_COLUMNS], ids=["uniform", "graded", "unlike neighbours"])
 def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
-    lever, _ = tilted_gap(grid, 0.2)
+    lever, _ = compute_lever(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
-    coarse = ContactProblem(
+    coarse_problem = ContactProblem(
         grid=grid, gap=plane, resultants=Resultants(2.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     ).coarsen()
-    coarse_grid = coarse.grid
+    coarse_grid = coarse_problem.grid
     assert coarse_grid.shape == (grid.cells_x // 2, grid.cells_y // 2)
     middles = 0.5 * (grid.x_edges[2::2] + grid.x_edges[:-2:2])
-    assert coarse.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], coarse_grid.shape))
-    assert coarse.resultants.lever is not None
-    assert coarse.resultants.lever[:, 0] == pytest.approx((middles - 0.2) / np.abs(grid.x - 0.2).max(), abs=1e-12)
+    assert coarse_problem.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], coarse_grid.shape))
+    assert coarse_problem.resultants.lever is not None
+    assert coarse_problem.resultants.lever[:, 0] == pytest.approx(
+        (middles - 0.2) / np.abs(grid.x - 0.2).max(), abs=1e-12
+    )
     # The force is equal: the coarse cells are four times as large.
-    assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / coarse_grid.cell_area)
+    assert coarse_problem.resultants.total == pytest.approx(2.0 * grid.cell_area / coarse_grid.cell_area)
 
 
 def test_merged_cells_ignore_infinite_gaps() -> None:
-    gap = np.broadcast_to(GRADED.x[:, None], GRADED.shape).copy()
+    gap = np.broadcast_to(GRADED_GRID.x[:, None], GRADED_GRID.shape).copy()
     gap[:3] = np.inf
-    coarse = ContactProblem(
-        grid=GRADED, gap=gap, resultants=Resultants(1.0), friction=0.0, tolerance=1e-6, max_iterations=500
+    coarse_problem = ContactProblem(
+        grid=GRADED_GRID, gap=gap, resultants=Resultants(1.0), friction=0.0, tolerance=1e-6, max_iterations=500
     ).coarsen()
-    assert np.isinf(coarse.gap[0]).all()
-    assert coarse.gap[1] == pytest.approx(GRADED.x[3])
-    mid_x = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
-    assert coarse.gap[2] == pytest.approx(mid_x)
+    assert np.isinf(coarse_problem.gap[0]).all()
+    assert coarse_problem.gap[1] == pytest.approx(GRADED_GRID.x[3])
+    mid_x = 0.5 * (GRADED_GRID.x_edges[4] + GRADED_GRID.x_edges[6])
+    assert coarse_problem.gap[2] == pytest.approx(mid_x)
 
 
-@pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
+@pytest.mark.parametrize("grid", [GRID, GRADED_GRID], ids=["uniform", "graded"])
 def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
-    lever, arm = tilted_gap(grid, 0.2)
+    lever, arm = compute_lever(grid, 0.2)
     level_gap = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
     sloping_gap = level_gap + 0.3 * (grid.x[:, None] - 0.2)
     request = ContactProblem(
@@ -148,38 +156,40 @@ def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
 
 
 def test_initial_guess_follows_gap_below_level() -> None:
-    """The guess on few cells is positive on the four tenths of the cells with the smallest gap."""
-    request = ball(GRID)
+    """The guess on few cells is positive on 40 percent of the cells, those with the smallest gap."""
+    request = make_ball_problem(GRID)
     guess = _initial_guess(CountingOperator(GRID), request)
     is_loaded = guess > 0
     assert is_loaded.mean() == pytest.approx(0.4, abs=0.02)
     assert request.gap[is_loaded].max() < request.gap[~is_loaded].min()
     assert np.ptp(request.gap[is_loaded] + guess[is_loaded] ** 2) < 1e-12
-    # The level lies a little above the gap of a flat shape, so that a flat shape is loaded everywhere.
+    # The level lies above the gap of a flat shape, so the whole flat shape is loaded.
     stepped_problem = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
     assert (_initial_guess(CountingOperator(GRID), stepped_problem) > 0).tolist() == (stepped_problem.gap == 0).tolist()
     # A prescribed approach determines the cells that overlap.
-    approach_problem = ball(GRID, None, deep=0.02)
+    approach_problem = make_ball_problem(GRID, None, approach=0.02)
     assert ((_initial_guess(CountingOperator(GRID), approach_problem) > 0) == (approach_problem.gap < 0)).all()
 
 
 def test_squared_pressure_continues_outside_hertz_contact() -> None:
     """The square is ``p0**2 (1 - r**2 / a**2)`` inside; just outside the contact it decreases with about this slope."""
     grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
-    request = ball(grid)
+    request = make_ball_problem(grid)
     operator = CountingOperator(grid)
     computed = solve_normal(operator, request)
-    squared = _continue_square(operator, request, computed)
+    squared_pressure = _continue_square(operator, request, computed)
     modulus, radius = BODY.material.plane_strain_modulus, 10.0
-    a = (0.75 * 0.05 * radius / modulus) ** (1 / 3)
-    peak = 1.5 * 0.05 / (np.pi * a**2)
-    position = np.hypot(grid.x[:, None] - 0.1, grid.y) / a
+    half_width = (0.75 * 0.05 * radius / modulus) ** (1 / 3)
+    peak = 1.5 * 0.05 / (np.pi * half_width**2)
+    position = np.hypot(grid.x[:, None] - 0.1, grid.y) / half_width
     hertz_square = peak**2 * (1 - position**2)
     is_inside, is_adjacent = position < 0.9, (position > 1.03) & (position < 1.15)
-    assert squared[is_inside] == pytest.approx(hertz_square[is_inside], abs=0.02 * peak**2)
-    assert (squared[position > 1.1] < 0).all()
-    assert squared[is_adjacent] / hertz_square[is_adjacent] == pytest.approx(np.ones(is_adjacent.sum()), abs=0.5)
-    assert np.median(squared[is_adjacent] / hertz_square[is_adjacent]) == pytest.approx(0.65, abs=0.1)
+    assert squared_pressure[is_inside] == pytest.approx(hertz_square[is_inside], abs=0.02 * peak**2)
+    assert (squared_pressure[position > 1.1] < 0).all()
+    assert squared_pressure[is_adjacent] / hertz_square[is_adjacent] == pytest.approx(
+        np.ones(is_adjacent.sum()), abs=0.5
+    )
+    assert np.median(squared_pressure[is_adjacent] / hertz_square[is_adjacent]) == pytest.approx(0.65, abs=0.1)
 
 
 @pytest.mark.parametrize("approach", [False, True])
@@ -188,10 +198,10 @@ def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, 
     edges = np.linspace(-1.5, 1.5, 65) + (0.1 * np.linspace(-1, 1, 65) ** 2 if graded else 0.0)
     grid = Grid.between(edges, (-1.5, 1.5), 64)
     operator = CountingOperator(grid)
-    request = ball(grid, None, deep=0.04) if approach else ball(grid)
+    request = make_ball_problem(grid, None, approach=0.04) if approach else make_ball_problem(grid)
     guess, computed = _initial_guess(operator, request), solve_normal(operator, request).pressure
-    off = (grid.weights * np.abs(guess - computed)).sum() / (grid.weights * computed).sum()
-    assert off < 0.03
+    relative_difference = (grid.weights * np.abs(guess - computed)).sum() / (grid.weights * computed).sum()
+    assert relative_difference < 0.03
     assert ((guess > 0) != (computed > 0)).sum() < 0.05 * (computed > 0).sum()
 
 
@@ -225,5 +235,7 @@ def test_last_round_changes_surface_within_tolerance(tolerance: float, friction:
     )
     computed = solve_problem(operator, request)
     assert computed.converged
-    shifted = float(np.ptp((friction_displacements[-1] - friction_displacements[-2])[computed.pressure > 0]))
-    assert shifted <= 0.55 * tolerance * float(np.ptp(expected({Load.NORMAL: computed.pressure})))
+    displacement_change = float(
+        np.ptp((friction_displacements[-1] - friction_displacements[-2])[computed.pressure > 0])
+    )
+    assert displacement_change <= 0.55 * tolerance * float(np.ptp(expected({Load.NORMAL: computed.pressure})))

@@ -12,61 +12,82 @@ from contactstudy.contact.refinement.refined_contact import RefinedContact, _Col
 STEEL = Material(210e9, 0.3)
 HALF_SPACE = HalfSpace(material=STEEL)
 RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
-A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
+HALF_WIDTH = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
 """Hertz half-width of a rigid roller; the half-width of an elastic roller is twice as large."""
-SHORT, SHORT_ELASTIC = 8 * A, 16 * A
+SHORT, SHORT_ELASTIC = 8 * HALF_WIDTH, 16 * HALF_WIDTH
 
 
-def filleted(radius: float, length: float = LENGTH, material: Material | None = None) -> Roller:
+def make_filleted_roller(radius: float, length: float = LENGTH, material: Material | None = None) -> Roller:
     return Roller(radius=RADIUS, length=length, profile=profiles.Cylinder(fillet_radius=radius), material=material)
 
 
-def finite(length: float = LENGTH) -> FiniteLengthSpace:
+def make_finite_body(length: float = LENGTH) -> FiniteLengthSpace:
     return FiniteLengthSpace(length=length, material=STEEL)
 
 
-def refined_at(case: Case, accuracy: float = 0.01) -> RefinedContact:
+def refine_case(case: Case, accuracy: float = 0.01) -> RefinedContact:
     return refine_contact(case, accuracy, 1e-6)
 
 
-def top_of(pressure: FloatArray) -> float:
-    """Largest pressure, also between the cells along y: the squared pressure is a parabola across the contact."""
-    squared = pressure**2
-    column = squared[squared.max(axis=1).argmax()]
+def find_peak_between_cells(pressure: FloatArray) -> float:
+    """Largest pressure, also between the cells along y, by a parabola through the squared pressure."""
+    squared_pressure = pressure**2
+    column = squared_pressure[squared_pressure.max(axis=1).argmax()]
     peak_row = int(column.argmax())
     coefficients = np.polynomial.polynomial.polyfit([-1.0, 0.0, 1.0], column[peak_row - 1 : peak_row + 2], 2)
     return float(np.sqrt(coefficients[0] - coefficients[1] ** 2 / (4 * coefficients[2])))
 
 
-def finer_peak(case: Case, refined: RefinedContact, factor: int) -> float:
+def compute_finer_peak(case: Case, refined_contact: RefinedContact, factor: int) -> float:
     """Peak on cells that are `factor` times finer along both axes."""
-    edges, grid = refined.refined.edges, refined.contact.shape.grid
-    fine = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
+    edges, grid = refined_contact.refined.edges, refined_contact.contact.shape.grid
+    fine_edges = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
     solver = _ColumnSolver(case, grid.y_range[1], grid.cells_y * factor)
-    return top_of(contact_of(solver.shape(fine), Settings(1e-6)).pressure)
+    return find_peak_between_cells(contact_of(solver.shape(fine_edges), Settings(1e-6)).pressure)
 
 
 CASES: dict[str, Case] = {
-    "flush": Case(body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
-    "inside": Case(body=finite(9 * A), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
-    "half-space": Case(body=HALF_SPACE, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "flush": Case(body=make_finite_body(SHORT), roller=make_filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "inside": Case(
+        body=make_finite_body(9 * HALF_WIDTH), roller=make_filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE
+    ),
+    "half-space": Case(body=HALF_SPACE, roller=make_filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE),
     "quarter": Case(
-        body=QuarterSpace(material=STEEL), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, end_distance=0.5 * A
+        body=QuarterSpace(material=STEEL),
+        roller=make_filleted_roller(0.2e-3, SHORT),
+        max_pressure=PRESSURE,
+        end_distance=0.5 * HALF_WIDTH,
     ),
     "mirror": Case(
         body=FiniteLengthSpace(length=SHORT, material=STEEL, model="mirror"),
-        roller=filleted(0.2e-3, SHORT),
+        roller=make_filleted_roller(0.2e-3, SHORT),
         max_pressure=PRESSURE,
     ),
-    "tilt": Case(body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, tilt=1e-3),
+    "tilt": Case(
+        body=make_finite_body(SHORT), roller=make_filleted_roller(0.2e-3, SHORT), max_pressure=PRESSURE, tilt=1e-3
+    ),
     "load position": Case(
-        body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, load_position=0.51 * SHORT
+        body=make_finite_body(SHORT),
+        roller=make_filleted_roller(0.2e-3, SHORT),
+        max_pressure=PRESSURE,
+        load_position=0.51 * SHORT,
     ),
     "coupled": Case(
-        body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, friction=0.3, coupled=True
+        body=make_finite_body(SHORT),
+        roller=make_filleted_roller(0.2e-3, SHORT),
+        max_pressure=PRESSURE,
+        friction=0.3,
+        coupled=True,
     ),
-    "elastic inside": Case(body=finite(SHORT_ELASTIC), roller=filleted(0.2e-3, 12 * A, STEEL), max_pressure=PRESSURE),
+    "elastic inside": Case(
+        body=make_finite_body(SHORT_ELASTIC),
+        roller=make_filleted_roller(0.2e-3, 12 * HALF_WIDTH, STEEL),
+        max_pressure=PRESSURE,
+    ),
     "elastic overhanging": Case(
-        body=finite(12 * A), roller=filleted(0.2e-3, SHORT_ELASTIC, STEEL), max_pressure=PRESSURE, end_distance=-2 * A
+        body=make_finite_body(12 * HALF_WIDTH),
+        roller=make_filleted_roller(0.2e-3, SHORT_ELASTIC, STEEL),
+        max_pressure=PRESSURE,
+        end_distance=-2 * HALF_WIDTH,
     ),
 }

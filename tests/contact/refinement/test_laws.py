@@ -1,4 +1,4 @@
-"""The law of a singular end: its kind, its intensity, and the pressure under an edge of small radius."""
+"""The law of a singular end: its exponent, its intensity, and the peak at an edge of small radius."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from contactstudy import InvalidInputError
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.laws import RIGID, EndLaw, Sample, edge_peak, elastic_exponent, law_of
 
-HALVINGS = 0.1 * 0.5 ** np.arange(7)
+WIDTHS = 0.1 * 0.5 ** np.arange(7)
 
 
-def column_means(edges: FloatArray, exponent: float, intensity: float, bend: float) -> FloatArray:
+def compute_column_means(edges: FloatArray, exponent: float, intensity: float, relative_slope: float) -> FloatArray:
     """Means over columns of ``K d**-m (1 + c d)``."""
     first_power, second_power = 1 - exponent, 2 - exponent
-    primitive = edges**first_power / first_power + bend * edges**second_power / second_power
+    primitive = edges**first_power / first_power + relative_slope * edges**second_power / second_power
     return np.asarray(intensity * np.diff(primitive) / np.diff(edges))
 
 
-def graded_edges(width: float) -> FloatArray:
+def make_graded_edges(width: float) -> FloatArray:
     return width * np.concatenate([np.arange(9.0), 8 + 2 * np.arange(1, 9), 24 + 4 * np.arange(1, 17)])
 
 
-@given(intensity=st.floats(1e-3, 1e9), bend=st.floats(-3.0, 3.0))
-def test_rigid_end_intensity_matches_power_law(intensity: float, bend: float) -> None:
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
+@given(intensity=st.floats(1e-3, 1e9), relative_slope=st.floats(-3.0, 3.0))
+def test_rigid_end_intensity_matches_power_law(intensity: float, relative_slope: float) -> None:
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, 0.5, intensity, relative_slope)[:, None] * np.array([0.4, 1.0, 0.4])
     law = EndLaw(exponent=0.5).with_intensity(edges, pressure, np.inf)
     assert law.intensity == pytest.approx(intensity, rel=1e-6)
     assert 0 < law.intensity_error < 5e-3 * intensity
@@ -36,20 +36,22 @@ def test_rigid_end_intensity_matches_power_law(intensity: float, bend: float) ->
 
 def test_intensity_uses_row_of_end_peak() -> None:
     # Random case 4007234: friction loads both ends at different positions along y, the other end more.
-    edges = graded_edges(1e-3)
-    end = column_means(edges, 0.5, 2.0, 0.0)
-    shifted = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
-    law = EndLaw(exponent=0.5).with_intensity(edges, np.stack([0.5 * end, end, shifted], axis=1), np.inf)
+    edges = make_graded_edges(1e-3)
+    end_pressure = compute_column_means(edges, 0.5, 2.0, 0.0)
+    far_row_pressure = np.where(edges[1:] > 0.03, 10 * end_pressure.max(), 0.0)
+    law = EndLaw(exponent=0.5).with_intensity(
+        edges, np.stack([0.5 * end_pressure, end_pressure, far_row_pressure], axis=1), np.inf
+    )
     assert law.intensity == pytest.approx(2.0, rel=1e-6)
-    lifted = law.with_intensity(edges, np.stack([shifted, shifted], axis=1), np.inf)
-    assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
+    law_of_unloaded_end = law.with_intensity(edges, np.stack([far_row_pressure, far_row_pressure], axis=1), np.inf)
+    assert (law_of_unloaded_end.intensity, law_of_unloaded_end.intensity_error) == (0.0, np.inf)
 
 
 @pytest.mark.parametrize("exponent", [0.5, np.nan])
 def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
     # Random case 4004708: friction reduces the contact to five columns.
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
     pressure[5:] = 0.0
     law = EndLaw(exponent=exponent).with_intensity(edges, pressure, np.inf)
     assert law.intensity_error == np.inf
@@ -60,35 +62,52 @@ def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
 
 @pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
-    edges = graded_edges(1e-3)
-    pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
+    edges = make_graded_edges(1e-3)
+    pressure = compute_column_means(edges, exponent, 2.0, -0.5)[:, None]
     law = EndLaw(exponent=np.nan).with_intensity(edges, pressure, np.inf)
     assert law.exponent == pytest.approx(exponent, abs=1e-3)
     assert law.intensity == pytest.approx(2.0, rel=1e-2)
 
 
-def slope_of_a_wedge(angle: float, s: float) -> float:
-    """Slope of the loaded face of a wedge, over its pressure ``r**(s - 1)`` times a constant of the material.
+def compute_wedge_slope(angle: float, s: float) -> float:
+    """Slope of the loaded face of a wedge over its pressure ``r**(s - 1)``, up to a constant of the material.
 
     Airy's function is ``r**(s + 1) F(t)``; its constants cancel in the ratio of two slopes.
     """
 
-    def shapes(t: float) -> FloatArray:
-        """F, F' and F'' of the four parts."""
-        upper, lower = s + 1, s - 1
+    def compute_fundamental_solutions(t: float) -> FloatArray:
+        """F, F' and F'' of the four fundamental solutions."""
+        upper_exponent, lower_exponent = s + 1, s - 1
         wedge_equations = [
-            (np.cos(upper * t), -upper * np.sin(upper * t), -(upper**2) * np.cos(upper * t)),
-            (np.sin(upper * t), upper * np.cos(upper * t), -(upper**2) * np.sin(upper * t)),
-            (np.cos(lower * t), -lower * np.sin(lower * t), -(lower**2) * np.cos(lower * t)),
-            (np.sin(lower * t), lower * np.cos(lower * t), -(lower**2) * np.sin(lower * t)),
+            (
+                np.cos(upper_exponent * t),
+                -upper_exponent * np.sin(upper_exponent * t),
+                -(upper_exponent**2) * np.cos(upper_exponent * t),
+            ),
+            (
+                np.sin(upper_exponent * t),
+                upper_exponent * np.cos(upper_exponent * t),
+                -(upper_exponent**2) * np.sin(upper_exponent * t),
+            ),
+            (
+                np.cos(lower_exponent * t),
+                -lower_exponent * np.sin(lower_exponent * t),
+                -(lower_exponent**2) * np.cos(lower_exponent * t),
+            ),
+            (
+                np.sin(lower_exponent * t),
+                lower_exponent * np.cos(lower_exponent * t),
+                -(lower_exponent**2) * np.sin(lower_exponent * t),
+            ),
         ]
         return np.array(wedge_equations).T
 
-    loaded_face, free_face = shapes(0.0), shapes(angle)
-    # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
+    loaded_face, free_face = compute_fundamental_solutions(0.0), compute_fundamental_solutions(angle)
+    # Stresses divided by r**(s - 1): s (s + 1) F across the radius, shear -s F'.
     conditions = np.array([s * (s + 1) * loaded_face[0], loaded_face[1], free_face[0], free_face[1]])
     _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
-    # Displacement across r**s: the parts with s + 1 have 2 G u = -dF / r, the parts with s - 1 also their Laplacian.
+    # Displacement across r**s: solutions with s + 1 have 2 G u = -dF / r, those with s - 1 also a term of the
+    # Laplacian.
     return float(s * (-(s + 1) * b - (s - 1) * d - 4 * d))
 
 
@@ -96,7 +115,7 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
 def test_elastic_exponent_satisfies_wedge_equation(s: float) -> None:
     quarter_space_slope = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
     half_space_slope = 1 / np.tan(np.pi * s)
-    slope_ratio = slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s)
+    slope_ratio = compute_wedge_slope(0.5 * np.pi, s) / compute_wedge_slope(np.pi, s)
     assert slope_ratio == pytest.approx(quarter_space_slope / half_space_slope)
 
 
@@ -108,49 +127,51 @@ def test_elastic_exponent_lies_between_rigid_limits(ratio: float) -> None:
     assert elastic_exponent(1.1 * ratio, 1.0) < exponent
 
 
-def samples(pressure: FloatArray) -> list[Sample]:
-    return [Sample(float(width), float(peak)) for width, peak in zip(HALVINGS, pressure, strict=True)]
+def make_samples(pressure: FloatArray) -> list[Sample]:
+    return [Sample(float(width), float(peak)) for width, peak in zip(WIDTHS, pressure, strict=True)]
 
 
 @given(exponent=st.floats(0.15, 0.5))
 def test_power_growth_has_power_law(exponent: float) -> None:
-    theory_law, fitted_law = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
+    theory_law, fitted_law = (
+        law_of(make_samples(WIDTHS**-exponent), theory_exponent) for theory_exponent in (RIGID, np.nan)
+    )
     assert theory_law == EndLaw(exponent=RIGID)
     assert fitted_law is not None
     assert np.isnan(fitted_law.exponent)
 
 
-@given(share=st.floats(0.02, 0.2))
-def test_logarithmic_growth_has_logarithm_law(share: float) -> None:
-    growing = samples(1 + share * np.log(1 / HALVINGS))
-    law = law_of(growing, np.nan)
+@given(growth_rate=st.floats(0.02, 0.2))
+def test_logarithmic_growth_has_logarithm_law(growth_rate: float) -> None:
+    growing_samples = make_samples(1 + growth_rate * np.log(1 / WIDTHS))
+    law = law_of(growing_samples, np.nan)
     assert law is not None
     assert law.exponent == 0
-    assert law_of(growing, 0.2264) == EndLaw(exponent=0.2264)
-    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
+    assert law_of(growing_samples, 0.2264) == EndLaw(exponent=0.2264)
+    assert np.isnan(law.with_intensity(make_graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
-@given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
-def test_converged_end_has_no_singular_law(power: float, share: float) -> None:
-    assert law_of(samples(1 - share * HALVINGS**power), np.nan) is None
+@given(power=st.floats(0.6, 2.0), growth_rate=st.floats(0.0, 1.0))
+def test_converged_end_has_no_singular_law(power: float, growth_rate: float) -> None:
+    assert law_of(make_samples(1 - growth_rate * WIDTHS**power), np.nan) is None
 
 
 def test_few_samples_and_falling_pressures_have_no_law() -> None:
-    assert law_of(samples(HALVINGS**-0.5)[:3], np.nan) is None
-    assert law_of(samples(HALVINGS**0.5), np.nan) is None
+    assert law_of(make_samples(WIDTHS**-0.5)[:3], np.nan) is None
+    assert law_of(make_samples(WIDTHS**0.5), np.nan) is None
 
 
 def test_end_loaded_on_some_columns_has_no_law() -> None:
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), np.nan) is None
+    assert law_of(make_samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), np.nan) is None
 
 
 def test_loaded_end_has_theoretical_exponent() -> None:
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(exponent=RIGID)
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
+    assert law_of(make_samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(exponent=RIGID)
+    assert law_of(make_samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
 
 
 @given(intensity=st.floats(1e3, 1e9), radius=st.floats(1e-7, 1e-3), factor=st.floats(0.1, 10.0))
-def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, factor: float) -> None:
+def test_peak_at_edge_radius_is_a_power_law(intensity: float, radius: float, factor: float) -> None:
     peak = edge_peak(intensity, 231e9, radius)
     assert edge_peak(intensity, 231e9, factor * radius) == pytest.approx(peak * factor ** (-1 / 3))
     assert edge_peak(factor * intensity, 231e9, radius) == pytest.approx(peak * factor ** (2 / 3))
@@ -174,53 +195,54 @@ EDGES = np.array(
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
 def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     """The fit uses columns from 3 to 64 widths, its error columns from 6 to 128; other columns have no influence."""
-    pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
+    pressure = compute_column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
-    def fitted_law(first_distance: float) -> EndLaw:
-        variant = pressure.copy()
-        variant[int(np.flatnonzero(first_distance == EDGES)[0])] *= 1.5
-        return EndLaw(exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
+    def fit_end_law(changed_distance: float) -> EndLaw:
+        changed_pressure = pressure.copy()
+        changed_pressure[int(np.flatnonzero(changed_distance == EDGES)[0])] *= 1.5
+        return EndLaw(exponent=0.5).with_intensity(unit * EDGES, changed_pressure, np.inf)
 
     baseline = EndLaw(exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
     assert baseline.intensity == pytest.approx(2.0)
-    for first_distance in (2.0, 128.0):
-        assert fitted_law(first_distance) == baseline
-    for first_distance in (3.0, 38.0):
-        assert fitted_law(first_distance).intensity != pytest.approx(2.0, rel=1e-3)
-    for first_distance in (64.0, 90.0):
-        assert fitted_law(first_distance).intensity == pytest.approx(2.0)
-        assert fitted_law(first_distance).intensity_error > 2 * baseline.intensity_error
+    for changed_distance in (2.0, 128.0):
+        assert fit_end_law(changed_distance) == baseline
+    for changed_distance in (3.0, 38.0):
+        assert fit_end_law(changed_distance).intensity != pytest.approx(2.0, rel=1e-3)
+    for changed_distance in (64.0, 90.0):
+        assert fit_end_law(changed_distance).intensity == pytest.approx(2.0)
+        assert fit_end_law(changed_distance).intensity_error > 2 * baseline.intensity_error
 
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
 def test_end_near_free_end_has_larger_error(width: float) -> None:
-    """Beyond half of the face between the ends the law does not hold; the fit uses columns up to 64 widths."""
+    """The law is invalid beyond half of the face between the ends; the fit uses columns up to 64 widths."""
     edges = width * EDGES
-    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
+    pressure = compute_column_means(edges, 0.5, 2.0, 0.0)[:, None]
     wide_face_law, narrow_face_law = (
-        EndLaw(exponent=0.5).with_intensity(edges, pressure, room * width).intensity_error for room in (129.0, 127.0)
+        EndLaw(exponent=0.5).with_intensity(edges, pressure, face_width * width).intensity_error
+        for face_width in (129.0, 127.0)
     )
     assert wide_face_law == pytest.approx(3e-3 * 2.0)
     assert narrow_face_law - wide_face_law == pytest.approx(0.08 * 2.0)
-    nearly_flush = EndLaw(exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
-    assert nearly_flush.intensity_error == np.inf
+    nearly_flush_law = EndLaw(exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
+    assert nearly_flush_law.intensity_error == np.inf
 
 
 def test_elastic_end_has_larger_error_of_change() -> None:
     """The factor 1.5 multiplies the change with the limits of the fit, not the error of the steps."""
-    pressure = column_means(EDGES, 0.5, 2.0, 0.01)[:, None]
+    pressure = compute_column_means(EDGES, 0.5, 2.0, 0.01)[:, None]
     pressure[np.searchsorted(EDGES, 90.0)] *= 1.1
-    rigid, elastic = (
+    rigid_law, elastic_law = (
         EndLaw(exponent=exponent).with_intensity(EDGES, pressure, np.inf) for exponent in (0.5, np.nextafter(0.5, 0.0))
     )
-    changes = [law.intensity_error - 3e-3 * law.intensity for law in (rigid, elastic)]
-    assert rigid.intensity_error > 1.5 * 3e-3 * rigid.intensity
+    changes = [law.intensity_error - 3e-3 * law.intensity for law in (rigid_law, elastic_law)]
+    assert rigid_law.intensity_error > 1.5 * 3e-3 * rigid_law.intensity
     assert changes[1] == pytest.approx(1.5 * changes[0])
 
 
 def test_rigid_exponent_bounds_elastic_exponent() -> None:
-    edges = graded_edges(1e-3)
-    law = EndLaw(exponent=np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
+    edges = make_graded_edges(1e-3)
+    law = EndLaw(exponent=np.nan).with_intensity(edges, compute_column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
     assert 0.49 < law.exponent <= 0.5
 
 

@@ -1,4 +1,4 @@
-"""A prescribed approach has Hertz' load, and the load that causes this approach has an error."""
+"""Load at a prescribed approach and its error, against Hertz."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ BALL = Case(
     roller=Roller(radius=RADIUS, length=0.8e-3, profile=profiles.FullCrown(crown_radius=RADIUS)),
     approach=APPROACH,
 )
-HERTZ = 4 / 3 * STEEL.plane_strain_modulus * np.sqrt(RADIUS) * APPROACH**1.5  # Johnson (1985), eq. 4.23
-SHORT = Case(
+HERTZ_LOAD = 4 / 3 * STEEL.plane_strain_modulus * np.sqrt(RADIUS) * APPROACH**1.5  # Johnson (1985), eq. 4.23
+SHORT_CASE = Case(
     body=FiniteLengthSpace(length=0.3e-3, material=STEEL),
     roller=Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1)),
     approach=1.5e-6,
@@ -55,7 +55,7 @@ SHORT = Case(
 
 def test_ball_carries_hertz_load() -> None:
     result = solve(BALL, stresses=False)
-    assert abs(float(result.normal_load) - HERTZ) < float(result.normal_load_error) < 2e-3 * HERTZ
+    assert abs(float(result.normal_load) - HERTZ_LOAD) < float(result.normal_load_error) < 2e-3 * HERTZ_LOAD
     assert float(result.approach) == APPROACH
     assert bool(result.converged)
     peak = 2 * STEEL.plane_strain_modulus / np.pi * np.sqrt(APPROACH / RADIUS)  # Johnson (1985), eq. 4.24
@@ -64,40 +64,40 @@ def test_ball_carries_hertz_load() -> None:
 
 @pytest.mark.slow
 def test_approach_between_free_ends_reproduces_load() -> None:
-    approach_result = solve(SHORT, stresses=False, accuracy=0.1)
-    loaded_case = replace(SHORT, approach=None, load=float(approach_result.normal_load))
-    variant = solve(loaded_case, stresses=False, accuracy=0.1)
-    assert float(approach_result.approach) == SHORT.approach
-    assert float(variant.approach) == pytest.approx(SHORT.approach, rel=1e-3)
-    assert float(approach_result.peak_pressure) == pytest.approx(float(variant.peak_pressure), rel=0.01)
+    approach_result = solve(SHORT_CASE, stresses=False, accuracy=0.1)
+    loaded_case = replace(SHORT_CASE, approach=None, load=float(approach_result.normal_load))
+    load_result = solve(loaded_case, stresses=False, accuracy=0.1)
+    assert float(approach_result.approach) == SHORT_CASE.approach
+    assert float(load_result.approach) == pytest.approx(SHORT_CASE.approach, rel=1e-3)
+    assert float(approach_result.peak_pressure) == pytest.approx(float(load_result.peak_pressure), rel=0.01)
     assert float(approach_result.hertz_half_width) == pytest.approx(loaded_case.hertz_half_width)
-    assert "normal_load_error" not in variant
+    assert "normal_load_error" not in load_result
 
 
 def test_tractions_at_prescribed_approach() -> None:
-    rolling = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
-    result = solve(rolling, stresses=False, accuracy=0.1)
+    rolling_case = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
+    result = solve(rolling_case, stresses=False, accuracy=0.1)
     assert float(result.approach) == APPROACH
-    assert float(result.normal_load) == pytest.approx(HERTZ, rel=5e-3)
+    assert float(result.normal_load) == pytest.approx(HERTZ_LOAD, rel=5e-3)
     assert 0 < abs(float(result.force_y)) < 0.1 * float(result.normal_load)
     assert "normal_load_error" in result
 
 
 def test_approach_on_given_cells_and_rough_surfaces() -> None:
     cells = Grid(x_range=(0.2e-3, 0.6e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=64, cells_y=64)
-    assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ, rel=0.02)
+    assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ_LOAD, rel=0.02)
     flat_heights = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
-    untilted_case = replace(SHORT, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
-    smooth = solve(untilted_case, stresses=False, accuracy=0.1)
+    untilted_case = replace(SHORT_CASE, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
+    untilted_result = solve(untilted_case, stresses=False, accuracy=0.1)
     assert float(solve(untilted_case, roughness=flat_heights, stresses=False).normal_load) == pytest.approx(
-        float(smooth.normal_load), rel=0.02
+        float(untilted_result.normal_load), rel=0.02
     )
 
 
-def test_distant_initial_load_is_corrected() -> None:
-    """A steep crown carries a hundredth of the load of its slices as line contacts."""
-    steep = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
-    computed = contact_at_approach(steep, 0.1, 1e-4)
+def test_load_search_converges_from_distant_initial_load() -> None:
+    """The load of a steep crown is a hundredth of the sum over line contacts of its slices."""
+    steep_case = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
+    computed = contact_at_approach(steep_case, 0.1, 1e-4)
     assert computed.contact.approach == APPROACH
 
 
@@ -127,13 +127,13 @@ def test_slice_load_sums_hertz_line_contacts() -> None:
     x = np.linspace(start, stop, 20001)
     depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
     assert _slice_load(BALL) == pytest.approx(load_factor * depth.mean() * (stop - start), rel=0.01)
-    # A contact between two slices has the least load of a case.
+    # If no slice touches, the initial load is the least load of a case.
     tilted_case = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
     min_load = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
     assert replace(BALL, approach=None, load=min_load).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
-@pytest.mark.parametrize(("case", "max_loads"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])
+@pytest.mark.parametrize(("case", "max_loads"), [(BALL, 4), (replace(SHORT_CASE, friction=0.0, coupled=False), 5)])
 def test_load_search_needs_few_loads(case: Case, max_loads: int, monkeypatch: pytest.MonkeyPatch) -> None:
     attempts: list[float] = []
 
@@ -148,20 +148,20 @@ def test_load_search_needs_few_loads(case: Case, max_loads: int, monkeypatch: py
 
 def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> None:
     """The depth of the contact is a power of the load, as for a ball."""
-    contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
+    contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ_LOAD), 0.1, 1e-4)
     attempts: list[float] = []
 
-    def power_law_contact(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+    def make_power_law_contact(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
         attempts.append(loaded_case.normal_load)
-        touch = float(contact_at_load.contact.shape.gap.values.min())
-        depth = (APPROACH - touch) * (loaded_case.normal_load / HERTZ) ** (2 / 3)
-        return replace(contact_at_load, contact=replace(contact_at_load.contact, approach=touch + depth))
+        first_touch = float(contact_at_load.contact.shape.gap.values.min())
+        depth = (APPROACH - first_touch) * (loaded_case.normal_load / HERTZ_LOAD) ** (2 / 3)
+        return replace(contact_at_load, contact=replace(contact_at_load.contact, approach=first_touch + depth))
 
-    monkeypatch.setattr(refined_contact, "refine_contact", power_law_contact)
-    search_load(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
-    factors = np.array(attempts) / HERTZ
-    assert factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
-    assert factors[2:] == pytest.approx([LOAD_EXCESS])
+    monkeypatch.setattr(refined_contact, "refine_contact", make_power_law_contact)
+    search_load(BALL, APPROACH, 0.2 * HERTZ_LOAD, 0.1, 1e-4)
+    load_factors = np.array(attempts) / HERTZ_LOAD
+    assert load_factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
+    assert load_factors[2:] == pytest.approx([LOAD_EXCESS])
     attempts.clear()
-    search_load(BALL, APPROACH, 1.06 * HERTZ, 0.1, 1e-4)
+    search_load(BALL, APPROACH, 1.06 * HERTZ_LOAD, 0.1, 1e-4)
     assert len(attempts) == 1

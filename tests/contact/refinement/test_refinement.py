@@ -1,4 +1,4 @@
-"""Columns that adapt to made-up pressures: split columns, stated values, end of the refinement."""
+"""Columns that adapt to prescribed pressures: split columns, values and errors, end of the refinement."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
 
 
-def shape(
-    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
+def make_shape(
+    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), is_elastic: bool = False
 ) -> AxialShape:
-    exponents = [np.nan if elastic or variant == 0 else RIGID for variant in face_beyond]
+    exponents = [np.nan if is_elastic or refined_contact == 0 else RIGID for refined_contact in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
@@ -51,21 +51,21 @@ def shape(
     )
 
 
-def column_pressure(pressure: FloatArray) -> ColumnPressure:
-    """Contact whose unloaded columns are far from it."""
+def make_column_pressure(pressure: FloatArray) -> ColumnPressure:
+    """Column pressure with an infinite opening of the unloaded columns."""
     return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
 def make_column_solver(line_pressure: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
-    """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
+    """Solver that returns column means of a pressure prescribed along the axis, elliptic across the contact."""
     nodes, weights = np.polynomial.legendre.leggauss(20)
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         if start is not None:
             assert start.shape == (edges.size - 1, Y.size)
-        within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
-        means = 0.5 * line_pressure(within) @ weights
-        return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        positions = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
+        means = 0.5 * line_pressure(positions) @ weights
+        return make_column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     return solve
 
@@ -74,26 +74,26 @@ def make_column_solver(line_pressure: Callable[[FloatArray], FloatArray]) -> Cal
 def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
     ratios = draw(st.lists(st.floats(0.4, 2.5), min_size=1, max_size=20))
     edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
-    chosen = draw(st.lists(st.booleans(), min_size=edges.size - 1, max_size=edges.size - 1))
-    return edges, np.array(chosen)
+    drawn_marks = draw(st.lists(st.booleans(), min_size=edges.size - 1, max_size=edges.size - 1))
+    return edges, np.array(drawn_marks)
 
 
-@given(marked=marked_edges())
-def test_split_halves_marked_columns(marked: tuple[FloatArray, BoolArray]) -> None:
-    edges, marks = marked
-    finer = split_columns(edges, marks)
-    assert np.all(np.isin(edges, finer))
+@given(marked_columns=marked_edges())
+def test_split_halves_marked_columns(marked_columns: tuple[FloatArray, BoolArray]) -> None:
+    edges, is_marked = marked_columns
+    fine_edges = split_columns(edges, is_marked)
+    assert np.all(np.isin(edges, fine_edges))
     centres = 0.5 * (edges[1:] + edges[:-1])
-    assert np.all(np.isin(centres[marks], finer))
-    widths = np.diff(finer)
+    assert np.all(np.isin(centres[is_marked], fine_edges))
+    widths = np.diff(fine_edges)
     assert np.all(widths > 0)
-    if marks.any():
+    if is_marked.any():
         assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= MAX_WIDTH_RATIO * (1 + 1e-12))
 
 
 @given(length=st.floats(1.0, 300.0))
 def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
-    edges = first_edges(shape(length))
+    edges = first_edges(make_shape(length))
     widths = np.diff(edges)
     assert (edges[0], edges[-1]) == (0.0, length)
     assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
@@ -102,41 +102,41 @@ def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
 
 
 def test_first_columns_split_at_curvature() -> None:
-    fillet, kink = 3.0, 17.0
+    fillet_radius, fillet_start = 3.0, 17.0
     bent_shape = AxialShape(
         start=0.0,
         stop=LENGTH,
         half_width=HALF_WIDTH,
         depth=0.05,
-        height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
+        height=lambda x: 0.5 * np.maximum(x - fillet_start, 0) ** 2 / fillet_radius,
         face_beyond=(0.0, 0.0),
     )
     widths = np.diff(first_edges(bent_shape))
-    baseline = np.diff(first_edges(shape()))
+    baseline = np.diff(first_edges(make_shape()))
     assert widths.size > baseline.size
     assert widths[-len(baseline) // 3 :].max() < baseline.max()
 
 
-@pytest.mark.parametrize("crest", [2.2, 9.1, 17.7])
-def test_first_columns_resolve_crest_between_samples(crest: float) -> None:
+@pytest.mark.parametrize("crest_x", [2.2, 9.1, 17.7])
+def test_first_columns_resolve_crest_between_samples(crest_x: float) -> None:
     """The crest is narrower than the distance of two samples: only the nodes contain it."""
-    nodes = np.sort(np.append(np.linspace(0.0, LENGTH, 201), crest + np.array([-4e-4, 1e-4, 5e-4])))
-    heights = np.where(np.abs(nodes - crest) < 2e-4, 0.0, 0.02)
-    ridge = replace(shape(), height=lambda x: np.interp(x, nodes, heights), nodes=nodes)
-    edges = first_edges(ridge)
+    nodes = np.sort(np.append(np.linspace(0.0, LENGTH, 201), crest_x + np.array([-4e-4, 1e-4, 5e-4])))
+    heights = np.where(np.abs(nodes - crest_x) < 2e-4, 0.0, 0.02)
+    ridge_shape = replace(make_shape(), height=lambda x: np.interp(x, nodes, heights), nodes=nodes)
+    edges = first_edges(ridge_shape)
     widths = np.diff(edges)
-    assert widths[np.searchsorted(edges, crest) - 1] <= MIN_CHORD_WIDTH * HALF_WIDTH
-    assert edges.size < 1.5 * first_edges(shape()).size
+    assert widths[np.searchsorted(edges, crest_x) - 1] <= MIN_CHORD_WIDTH * HALF_WIDTH
+    assert edges.size < 1.5 * first_edges(make_shape()).size
 
 
 def test_open_column_with_step_at_end_is_not_overlooked() -> None:
-    stepping_shape = replace(shape(), height=lambda x: np.where((x > 0.0) & (x < LENGTH), 0.0, 1e3))
-    edges, loaded = np.linspace(0.0, LENGTH, 11), np.zeros(10, dtype=bool)
+    stepped_shape = replace(make_shape(), height=lambda x: np.where((x > 0.0) & (x < LENGTH), 0.0, 1e3))
+    edges, is_loaded = np.linspace(0.0, LENGTH, 11), np.zeros(10, dtype=bool)
     for opening, is_overlooked in ((0.01, False), (-0.01, True)):
-        assert (find_overlooked(stepping_shape, edges, loaded, np.full(10, opening)) == is_overlooked).all()
+        assert (find_overlooked(stepped_shape, edges, is_loaded, np.full(10, opening)) == is_overlooked).all()
 
 
-BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
+AXIAL_PRESSURES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "narrow": lambda x: 1 + 2 * np.exp(-(((x - 3.3) / 0.15) ** 2)),
     "contact's end": lambda x: np.sqrt(np.maximum(1 - ((x - 10.0) / 8.0) ** 2, 0)),
     "lesser peak": lambda x: 1 + np.exp(-(((x - 2.0) / 0.3) ** 2)) + 0.5 * np.exp(-(((x - 17.0) / 0.2) ** 2)),
@@ -146,24 +146,24 @@ BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
-@pytest.mark.parametrize("name", BUMPS)
+@pytest.mark.parametrize("name", AXIAL_PRESSURES)
 def test_errors_cover_peak_and_ends(name: str, accuracy: float) -> None:
-    line_pressure = BUMPS[name]
-    computed = refine_columns(make_column_solver(line_pressure), shape(), accuracy)
+    line_pressure = AXIAL_PRESSURES[name]
+    computed = refine_columns(make_column_solver(line_pressure), make_shape(), accuracy)
     peak = float(line_pressure(np.linspace(0.0, LENGTH, 200001)).max())
     assert computed.accurate
     assert computed.laws == [None, None]
     assert abs(computed.peak - peak) <= computed.peak_error <= accuracy * peak * (1 + 1e-9)
-    ends = line_pressure(np.array([0.0, LENGTH]))
-    for end, error, exact_pressure in zip(
-        computed.values["end_pressure"], computed.errors["end_pressure"], ends, strict=True
+    end_pressures = line_pressure(np.array([0.0, LENGTH]))
+    for end_pressure, error, exact_pressure in zip(
+        computed.values["end_pressure"], computed.errors["end_pressure"], end_pressures, strict=True
     ):
-        assert abs(end - exact_pressure) <= error + 1e-12
+        assert abs(end_pressure - exact_pressure) <= error + 1e-12
 
 
 def test_tighter_accuracy_takes_more_columns() -> None:
     sizes = [
-        refine_columns(make_column_solver(BUMPS["narrow"]), shape(), accuracy).edges.size
+        refine_columns(make_column_solver(AXIAL_PRESSURES["narrow"]), make_shape(), accuracy).edges.size
         for accuracy in (0.02, 0.003, 0.0015)
     ]
     assert sizes[0] < sizes[1] < sizes[2]
@@ -171,60 +171,65 @@ def test_tighter_accuracy_takes_more_columns() -> None:
 
 @given(bump_position=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
 def test_mirrored_pressure_is_refined_to_mirrored_columns(bump_position: float, height: float, width: float) -> None:
-    def bump(x: FloatArray) -> FloatArray:
+    def compute_pressure_with_bump(x: FloatArray) -> FloatArray:
         return np.asarray(1 + height * np.exp(-(((x - bump_position) / width) ** 2)))
 
-    original = refine_columns(make_column_solver(bump), shape(), 0.02)
-    mirrored = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
-    assert mirrored.peak == pytest.approx(original.peak, rel=2e-3)
-    assert abs(mirrored.edges.size - original.edges.size) <= 4
-    assert abs(original.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= original.peak_error
+    original_columns = refine_columns(make_column_solver(compute_pressure_with_bump), make_shape(), 0.02)
+    mirrored_columns = refine_columns(
+        make_column_solver(lambda x: compute_pressure_with_bump(LENGTH - x)), make_shape(), 0.02
+    )
+    assert mirrored_columns.peak == pytest.approx(original_columns.peak, rel=2e-3)
+    assert abs(mirrored_columns.edges.size - original_columns.edges.size) <= 4
+    assert (
+        abs(original_columns.peak - float(compute_pressure_with_bump(np.linspace(0, LENGTH, 20001)).max()))
+        <= original_columns.peak_error
+    )
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
 def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) -> None:
-    bend = 0.02
+    relative_slope = 0.02
 
     def solve_exactly(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         first_primitive, second_primitive = (edges**power / power for power in (1 - exponent, 2 - exponent))
-        means = 0.7 * np.diff(first_primitive + bend * second_primitive) / np.diff(edges)
-        return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        means = 0.7 * np.diff(first_primitive + relative_slope * second_primitive) / np.diff(edges)
+        return make_column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    computed = refine_columns(solve_exactly, shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
-    law, variant = computed.laws
-    assert law is not None
-    assert variant is None
+    computed = refine_columns(solve_exactly, make_shape(face_beyond=(np.inf, 0.0), is_elastic=exponent != RIGID), 0.01)
+    singular_law, regular_law = computed.laws
+    assert singular_law is not None
+    assert regular_law is None
     assert np.isinf(
         [computed.peak, computed.peak_error, computed.values["end_pressure"][0], computed.errors["end_pressure"][0]]
     ).all()
-    assert law.exponent == pytest.approx(exponent, abs=0.02)
+    assert singular_law.exponent == pytest.approx(exponent, abs=0.02)
     assert np.diff(computed.edges)[0] <= MIN_END_COLUMN * HALF_WIDTH
     assert computed.values["end_pressure"][1] == pytest.approx(
-        0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=computed.errors["end_pressure"][1]
+        0.7 * LENGTH**-exponent * (1 + relative_slope * LENGTH), abs=computed.errors["end_pressure"][1]
     )
     # The intensity K belongs to the row of cells next to y = 0.
-    assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
+    assert singular_law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
 
 def test_unresolved_pressure_ends_at_maximum_columns() -> None:
     def solve_alternating(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
         noise[[0, 1, -2, -1]] = 0.0
-        return column_pressure((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return make_column_pressure((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    computed = refine_columns(solve_alternating, shape(), 0.001)
+    computed = refine_columns(solve_alternating, make_shape(), 0.001)
     assert not computed.accurate
     assert computed.edges.size <= 2 * MAX_COLUMNS
     assert computed.peak_error > 0.001 * computed.peak
 
 
-def power_law(x: FloatArray) -> FloatArray:
+def compute_power_law(x: FloatArray) -> FloatArray:
     """Pressure that is singular at the first end."""
     return np.asarray(0.7 / np.sqrt(x))
 
 
-SCALED_PRESSURES = BUMPS | {
-    "singular": power_law,
+SCALED_PRESSURES = AXIAL_PRESSURES | {
+    "singular": compute_power_law,
     "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
     "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
     "rises to one end": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2),
@@ -233,23 +238,26 @@ SCALED_PRESSURES = BUMPS | {
 
 
 @pytest.mark.parametrize(
-    ("unit", "offset", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
+    ("unit", "offset", "end"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
 @pytest.mark.parametrize("name", SCALED_PRESSURES)
-def test_refinement_scales_with_units_position_and_side(name: str, unit: float, offset: float, side: int) -> None:
-    """The columns do not depend on the side, the position, or the units of length and pressure."""
+def test_refinement_scales_with_units_position_and_side(name: str, unit: float, offset: float, end: int) -> None:
+    """The columns do not depend on the units of length and pressure, on the position, or on the end that is counted
+    first."""
     pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
-    def unit_position(x: FloatArray) -> FloatArray:
+    def compute_unit_position(x: FloatArray) -> FloatArray:
         """Distances from the first end, in the original unit."""
-        return x / unit - offset if side == 0 else LENGTH - (x / unit - offset)
+        return x / unit - offset if end == 0 else LENGTH - (x / unit - offset)
 
     def height(x: FloatArray) -> FloatArray:
         return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
-        order = slice(None, None, 1 - 2 * side)
-        return column_pressure(pressure * unit_solver(unit_position(edges)[order], None, tolerance).pressure[order])
+        order = slice(None, None, 1 - 2 * end)
+        return make_column_pressure(
+            pressure * unit_solver(compute_unit_position(edges)[order], None, tolerance).pressure[order]
+        )
 
     face_beyond, exponents = (3.0, 0.0), (RIGID, np.nan)
     baseline = refine_columns(
@@ -270,18 +278,18 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
         stop=unit * (offset + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
-        height=lambda x: unit * height(unit_position(x)),
-        face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
-        exponents=exponents[:: 1 - 2 * side],
+        height=lambda x: unit * height(compute_unit_position(x)),
+        face_beyond=(unit * face_beyond[end], unit * face_beyond[1 - end]),
+        exponents=exponents[:: 1 - 2 * end],
     )
     shifted_result = refine_columns(solve, shifted_shape, 0.02)
     assert (shifted_result.accurate, shifted_result.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
-    assert np.sort(unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
+    assert np.sort(compute_unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
         for values, expected in ((shifted_result.values, baseline.values), (shifted_result.errors, baseline.errors)):
-            assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
+            assert np.array(values[key])[:: 1 - 2 * end] / factor == pytest.approx(expected[key], rel=1e-6), key
     for computed, law in zip(
-        shifted_result.laws if side == 0 else shifted_result.laws[::-1], baseline.laws, strict=True
+        shifted_result.laws if end == 0 else shifted_result.laws[::-1], baseline.laws, strict=True
     ):
         assert (computed is None) == (law is None)
         if computed and law:
@@ -291,31 +299,31 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
                 assert getattr(computed, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
 
 
-def outermost_widths(
-    name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, elastic: bool = False
+def list_outermost_widths(
+    name: str, face_beyond: tuple[float, float] = (0.0, 0.0), *, is_elastic: bool = False
 ) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
-    request = shape(face_beyond=face_beyond, elastic=elastic)
+    request = make_shape(face_beyond=face_beyond, is_elastic=is_elastic)
     widths = np.diff(refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02).edges) / HALF_WIDTH
     return float(widths[0]), float(widths[-1])
 
 
-@pytest.mark.parametrize("elastic", [False, True])
-def test_sharper_ends_have_narrower_columns(*, elastic: bool) -> None:
-    for width in outermost_widths("falls to the end"):
+@pytest.mark.parametrize("is_elastic", [False, True])
+def test_sharper_ends_have_narrower_columns(*, is_elastic: bool) -> None:
+    for width in list_outermost_widths("falls to the end"):
         assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
-        assert 0.3 * MIN_END_COLUMN < outermost_widths(name)[1] <= MIN_END_COLUMN
+        assert 0.3 * MIN_END_COLUMN < list_outermost_widths(name)[1] <= MIN_END_COLUMN
     for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
-        widths = outermost_widths("falls to the end", face_beyond, elastic=elastic)
-        sharp = face_beyond.index(2.0)
-        assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
-        assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
-    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
+        widths = list_outermost_widths("falls to the end", face_beyond, is_elastic=is_elastic)
+        sharp_end = face_beyond.index(2.0)
+        assert 0.1 * MIN_END_COLUMN < widths[sharp_end] <= MIN_END_COLUMN
+        assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp_end] <= END_COLUMN_WIDTH
+    assert min(list_outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
 
 
 def test_columns_near_contact_ends_are_narrow() -> None:
-    computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), shape(), 0.05)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), make_shape(), 0.05)
     edges, widths = computed.edges, np.diff(computed.edges)
     loaded_columns = np.flatnonzero(computed.pressure.any(axis=1))
     for end in (edges[loaded_columns[0]], edges[loaded_columns[-1] + 1]):
@@ -342,11 +350,13 @@ def test_end_step_marks_end_columns(side: int, unit: float) -> None:
         height=np.zeros_like,
         face_beyond=(0.0, 0.0),
     )
-    state = Refinement(
-        solve=lambda *_: column_pressure(line_pressure[:, None] * np.sqrt(1 - Y**2)), shape=request, edges=unit * edges
+    refinement = Refinement(
+        solve=lambda *_: make_column_pressure(line_pressure[:, None] * np.sqrt(1 - Y**2)),
+        shape=request,
+        edges=unit * edges,
     )
-    for theta, marked in ((0.19, True), (0.21, False)):
-        assert state._select_columns_to_split(theta)[-side] == marked
+    for theta, is_marked in ((0.19, True), (0.21, False)):
+        assert refinement._select_columns_to_split(theta)[-side] == is_marked
 
 
 def test_error_is_half_of_last_changes() -> None:
@@ -359,7 +369,7 @@ def test_error_is_half_of_last_changes() -> None:
 
 @pytest.mark.parametrize("length", [20.0, 0.5])
 def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
-    computed = refine_columns(make_column_solver(BUMPS["even"]), shape(length), 0.02)
+    computed = refine_columns(make_column_solver(AXIAL_PRESSURES["even"]), make_shape(length), 0.02)
     baseline = float(computed.pressure[0].sum()) * min(HALF_WIDTH, length)
     assert computed.values["end_load"] == pytest.approx((baseline, baseline))
     relative_errors = np.array(computed.errors["peak_pressure"]) / computed.values["peak_pressure"]
@@ -368,58 +378,60 @@ def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
 def test_replaced_pressure_scales_errors(name: str) -> None:
-    request = shape(face_beyond=(3.0, 0.0))
+    request = make_shape(face_beyond=(3.0, 0.0))
     computed = refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02)
-    variant = replace_pressure(computed, 1.25 * computed.pressure, request)
-    for values, expected in ((variant.values, computed.values), (variant.errors, computed.errors)):
+    replaced_contact = replace_pressure(computed, 1.25 * computed.pressure, request)
+    for values, expected in ((replaced_contact.values, computed.values), (replaced_contact.errors, computed.errors)):
         for key in ("peak_pressure", "end_pressure"):
             assert values[key] == pytest.approx([1.25 * value for value in expected[key]]), key
-    assert variant.values["end_load"] == pytest.approx([1.25 * value for value in computed.values["end_load"]])
-    assert variant.errors["end_load"] == computed.errors["end_load"]
-    for law, repeated in zip(computed.laws, variant.laws, strict=True):
-        assert (law is None) == (repeated is None)
-        if law and repeated:
-            assert repeated.intensity == pytest.approx(1.25 * law.intensity)
+    assert replaced_contact.values["end_load"] == pytest.approx([1.25 * value for value in computed.values["end_load"]])
+    assert replaced_contact.errors["end_load"] == computed.errors["end_load"]
+    for law, replaced_law in zip(computed.laws, replaced_contact.laws, strict=True):
+        assert (law is None) == (replaced_law is None)
+        if law and replaced_law:
+            assert replaced_law.intensity == pytest.approx(1.25 * law.intensity)
 
 
 def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     # Random case 4008736: coupled friction loads an end that the pressure alone does not reach.
-    request = shape()
+    request = make_shape()
     computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), request, 0.02)
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ([0.0, 0.0], [0.0, 0.0])
-    column_pressure = computed.pressure.copy()
-    column_pressure[:20] += 0.02 * computed.pressure.max()
-    variant = replace_pressure(computed, column_pressure, request)
-    first, last = variant.values["end_pressure"]
-    assert first > 0
-    assert variant.errors["end_pressure"] == [first, last] == [first, 0.0]
+    changed_pressure = computed.pressure.copy()
+    changed_pressure[:20] += 0.02 * computed.pressure.max()
+    refined_contact = replace_pressure(computed, changed_pressure, request)
+    first_pressure, last_pressure = refined_contact.values["end_pressure"]
+    assert first_pressure > 0
+    assert refined_contact.errors["end_pressure"] == [first_pressure, last_pressure] == [first_pressure, 0.0]
 
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
 def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
-    computed = refine_columns(make_column_solver(SCALED_PRESSURES["even"]), shape(), 0.02)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES["even"]), make_shape(), 0.02)
 
-    def peak_error(peaks: tuple[float, ...]) -> float:
+    def compute_peak_error(peaks: tuple[float, ...]) -> float:
         return replace(computed, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
 
-    assert np.isinf(peak_error((1.0, 1.0)))
-    assert peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
+    assert np.isinf(compute_peak_error((1.0, 1.0)))
+    assert compute_peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
 
 
 def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
-    state = Refinement(
-        solve=make_column_solver(SCALED_PRESSURES["rises to one end"]), shape=shape(), edges=first_edges(shape())
+    refinement = Refinement(
+        solve=make_column_solver(SCALED_PRESSURES["rises to one end"]),
+        shape=make_shape(),
+        edges=first_edges(make_shape()),
     )
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
-            state.refine(theta)
-    assert caplog.messages[-1] == f"refined to {state.edges.size - 1} columns"
-    for side, samples in enumerate(state.samples):
+            refinement.refine(theta)
+    assert caplog.messages[-1] == f"refined to {refinement.edges.size - 1} columns"
+    for side, samples in enumerate(refinement.samples):
         widths = np.array([sample.width for sample in samples])
         assert len(samples) > 3
         assert widths[:-1] / widths[1:] == pytest.approx(2.0)
-        assert widths[-1] == pytest.approx(np.diff(state.edges)[-side])
-        assert samples[-1].pressure == pytest.approx(state.pressure[-side].max(), rel=1e-3)
+        assert widths[-1] == pytest.approx(np.diff(refinement.edges)[-side])
+        assert samples[-1].pressure == pytest.approx(refinement.pressure[-side].max(), rel=1e-3)
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -431,7 +443,7 @@ def test_unloaded_sharp_end_has_no_law(side: int) -> None:
         return np.asarray(np.where(position > 0.06, 1.0, 0.0) * (1 - 0.2 * position / LENGTH))
 
     face_beyond = (2.0, 0.0) if side == 0 else (0.0, 2.0)
-    computed = refine_columns(make_column_solver(line_pressure), shape(face_beyond=face_beyond), 0.05)
+    computed = refine_columns(make_column_solver(line_pressure), make_shape(face_beyond=face_beyond), 0.05)
     assert computed.laws == [None, None]
     assert computed.values["end_pressure"][side] == 0.0
     assert np.isfinite(computed.errors["end_pressure"]).all()
@@ -446,7 +458,7 @@ def test_peak_at_sharp_end_has_infinite_error(side: int, slope: float) -> None:
         return np.asarray(1 + slope * distance / LENGTH)
 
     columns = refine_columns(
-        make_column_solver(pressure), shape(face_beyond=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05
+        make_column_solver(pressure), make_shape(face_beyond=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05
     )
     for errors in (columns.errors["end_pressure"], columns.errors["peak_pressure"]):
         assert np.isinf(errors[side])
@@ -459,32 +471,34 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0
 
-    def singular(axial_shape: AxialShape) -> bool:
-        refinement = Refinement(solve=lambda *_: column_pressure(pressure), shape=axial_shape, edges=np.arange(5.0))
+    def is_singular(axial_shape: AxialShape) -> bool:
+        refinement = Refinement(
+            solve=lambda *_: make_column_pressure(pressure), shape=axial_shape, edges=np.arange(5.0)
+        )
         refinement.laws = [law, None] if side else [None, law]
         return refinement.singular
 
-    sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
-    assert singular(shape(face_beyond=sharp))
-    assert singular(shape(face_beyond=blunt)) == (law is not None)
-    assert singular(shape(face_beyond=sharp, elastic=True)) == (law is not None)
+    sharp_faces, other_faces = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
+    assert is_singular(make_shape(face_beyond=sharp_faces))
+    assert is_singular(make_shape(face_beyond=other_faces)) == (law is not None)
+    assert is_singular(make_shape(face_beyond=sharp_faces, is_elastic=True)) == (law is not None)
 
 
 def test_rough_contact_uses_second_threshold() -> None:
-    solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), shape()
-    coarse, fine = refine_coarsely(solve, request), refine_columns(solve, request, 0.02)
-    assert np.isin(coarse.edges, fine.edges).all()
-    repeated = refine_columns(solve, request, 0.02, coarse.edges)
-    assert repeated.edges == pytest.approx(fine.edges)
-    assert repeated.first_edges == pytest.approx(coarse.edges)
-    assert coarse.laws == [None, None]
+    solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), make_shape()
+    coarse_result, fine_result = refine_coarsely(solve, request), refine_columns(solve, request, 0.02)
+    assert np.isin(coarse_result.edges, fine_result.edges).all()
+    continued_result = refine_columns(solve, request, 0.02, coarse_result.edges)
+    assert continued_result.edges == pytest.approx(fine_result.edges)
+    assert continued_result.first_edges == pytest.approx(coarse_result.edges)
+    assert coarse_result.laws == [None, None]
 
 
 @pytest.mark.parametrize(("side", "half_width"), [(0, HALF_WIDTH), (1, HALF_WIDTH), (0, 0.25)])
 def test_pressure_at_corner_is_refined_on_both_sides(side: int, half_width: float) -> None:
     """The logarithm at a corner makes the peak of its half infinite, and the columns on both sides narrow."""
     corner = (6.3, LENGTH - 6.3)[side]
-    cornered_shape = replace(shape(), corners=(corner,), half_width=half_width)
+    cornered_shape = replace(make_shape(), corners=(corner,), half_width=half_width)
     result = refine_columns(make_column_solver(lambda x: 3 - 0.5 * np.log(np.abs(x - corner))), cornered_shape, 0.01)
     peaks = result.values["peak_pressure"]
     assert np.isinf(peaks[side])

@@ -1,4 +1,4 @@
-"""First columns: their widths, and their adaption to a shape where it is low enough to be loaded."""
+"""First columns: widths, and adaptation to the shape where its height allows a load."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 }
 
 
-def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
-    """Shape of half-width 1 and depth 0.05, with lengths in a unit and from a position on."""
+def make_axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
+    """Shape of half-width 1 and depth 0.05 in a unit of length, with its first end at `start`."""
     return AxialShape(
         start=start,
         stop=start + unit * LENGTH,
@@ -44,7 +44,9 @@ def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, s
     )
 
 
-def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+def compute_chord_deviation(
+    height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
+) -> FloatArray:
     """Distance of the shape from its chord between two positions."""
     fraction = np.linspace(1e-6, 1 - 1e-6, 201)
     heights = height(low[:, None] + (high - low)[:, None] * fraction)
@@ -53,31 +55,34 @@ def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray,
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_overlooked_columns_leave_low_shape(name: str) -> None:
+def test_first_columns_follow_low_shape(name: str) -> None:
     height = SHAPES[name]
-    edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
-    widths, deviations = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
-    fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
+    edges, baseline = first_edges(make_axial_shape(height)), first_edges(make_axial_shape(np.zeros_like))
+    widths, deviations = np.diff(edges), compute_chord_deviation(height, edges[:-1], edges[1:])
+    fine_x = np.linspace(1e-6, LENGTH - 1e-6, 20001)
     positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
-    height_excess = height(positions).min(axis=1) - height(fine).min()
+    height_excess = height(positions).min(axis=1) - height(fine_x).min()
     depth = 0.05
-    followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
-    assert deviations[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
+    is_followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
+    assert deviations[is_followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only if it leaves its chord, or if a neighbour is narrow.
     assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):
         split_columns = ~np.isin(edges, baseline)
         assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # the crests are never loaded
-        crests = height_excess > 6 * depth
-        assert crests.any()
-        assert np.median(widths[crests]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
+        is_crest = height_excess > 6 * depth
+        assert is_crest.any()
+        assert np.median(widths[is_crest]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
 
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize(("unit", "start"), [(2.0**-17, 0.0), (1.0, -8.0), (1.0, 32.0)])
 def test_results_scale_with_unit_and_position(name: str, unit: float, start: float) -> None:
-    baseline, variant = first_edges(axial_shape(SHAPES[name])), first_edges(axial_shape(SHAPES[name], unit, start))
+    baseline, variant = (
+        first_edges(make_axial_shape(SHAPES[name])),
+        first_edges(make_axial_shape(SHAPES[name], unit, start)),
+    )
     assert (variant - start) / unit == pytest.approx(baseline, abs=1e-9)
 
 
@@ -96,17 +101,17 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
     half_widths = widths[: widths.size // 2]
     ratios = half_widths[1:] / half_widths[:-1]
     assert (ratios <= 2 * (1 + 1e-9)).all()
-    growing = half_widths[1:] < 0.7 * widths.max()
-    assert ratios[growing] == pytest.approx(2.0)
+    is_growing = half_widths[1:] < 0.7 * widths.max()
+    assert ratios[is_growing] == pytest.approx(2.0)
     assert widths == pytest.approx(widths[::-1])
 
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
 def test_straight_incline_adds_no_columns(slope: float) -> None:
     """The incline rises by more than the depth within a column, but never leaves its chord."""
-    baseline, incline = first_edges(axial_shape(np.zeros_like)), axial_shape(lambda x: slope * x)
+    baseline, inclined_shape = first_edges(make_axial_shape(np.zeros_like)), make_axial_shape(lambda x: slope * x)
     for nodes in (np.zeros(0), np.linspace(1.0, 19.0, 50)):
-        assert first_edges(replace(incline, nodes=nodes)) == pytest.approx(baseline)
+        assert first_edges(replace(inclined_shape, nodes=nodes)) == pytest.approx(baseline)
 
 
 def test_curved_shape_reaches_maximum_columns() -> None:
@@ -128,7 +133,7 @@ def test_curved_shape_reaches_maximum_columns() -> None:
 @pytest.mark.parametrize("width", [0.02, 0.1])
 def test_first_columns_contain_narrow_ridges(position: float, width: float) -> None:
     """Ridges of a measured profile, narrower than the widest first column by a factor of 12 to 60."""
-    shape = axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
+    shape = make_axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
     edges = first_edges(shape)
     columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
     assert columns.size
@@ -138,7 +143,9 @@ def test_first_columns_contain_narrow_ridges(position: float, width: float) -> N
 @pytest.mark.parametrize("position", [5.1, 7.43, 12.77])
 def test_first_columns_contain_ridges_at_nodes(position: float) -> None:
     """A ridge between all sampled points, with its crest at a node."""
-    ridge_shape = axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.maximum(1 - np.abs(x - position) / 1e-3, 0.0))
+    ridge_shape = make_axial_shape(
+        lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.maximum(1 - np.abs(x - position) / 1e-3, 0.0)
+    )
     edges = first_edges(replace(ridge_shape, nodes=np.array([2.0, position, 17.0])))
     column = np.searchsorted(edges, position) - 1
     assert np.diff(edges)[column] <= MIN_CHORD_WIDTH
@@ -146,16 +153,19 @@ def test_first_columns_contain_ridges_at_nodes(position: float) -> None:
 
 def test_close_corners_are_edges() -> None:
     corners = (13.0, 13.001, 13.002)
-    assert set(corners) <= set(first_edges(replace(axial_shape(SHAPES["chamfer"]), corners=corners)).tolist())
+    assert set(corners) <= set(first_edges(replace(make_axial_shape(SHAPES["chamfer"]), corners=corners)).tolist())
 
 
 @pytest.mark.parametrize("corner", [0.4, 7.43, 12.77])
 def test_corner_moves_neighbouring_edges_only(corner: float) -> None:
-    without = first_edges(axial_shape(np.zeros_like))
-    edges = first_edges(replace(axial_shape(np.zeros_like), corners=(corner,)))
-    widest = np.diff(without).max()
-    distant_edges = without[np.abs(without - corner) > 0.25 * widest]
+    uncornered_edges = first_edges(make_axial_shape(np.zeros_like))
+    edges = first_edges(replace(make_axial_shape(np.zeros_like), corners=(corner,)))
+    max_width = np.diff(uncornered_edges).max()
+    distant_edges = uncornered_edges[np.abs(uncornered_edges - corner) > 0.25 * max_width]
     assert corner in edges
     assert np.isin(distant_edges, edges).all()
     column = np.searchsorted(edges, corner)
-    assert min(np.diff(edges)[column - 1 : column + 1]) >= 0.2 * np.diff(without)[np.searchsorted(without, corner) - 1]
+    assert (
+        min(np.diff(edges)[column - 1 : column + 1])
+        >= 0.2 * np.diff(uncornered_edges)[np.searchsorted(uncornered_edges, corner) - 1]
+    )

@@ -1,4 +1,4 @@
-"""Motions of a ball under a load that rolls or is shifted: every kind of prescription."""
+"""Motions of a loaded ball: rolling and shifts with every kind of prescribed value."""
 
 from __future__ import annotations
 

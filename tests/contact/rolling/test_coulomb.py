@@ -1,4 +1,4 @@
-"""Coulomb's law on few cells, with a check of every condition in each cell."""
+"""Coulomb's law on few cells: every condition is checked in each cell."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from contactstudy.contact.rolling.coulomb import (
 )
 
 
-def problem(
-    rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
+def make_problem(
+    rigid_slip: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
 ) -> CoulombProblem:
-    """Problem of cells with a random positive compliance; `skew` makes it as unsymmetric as in rolling."""
+    """Problem with a random positive definite compliance; `skew` adds an antisymmetric matrix, as in rolling."""
     rng = np.random.default_rng(seed)
     unknown_count = 2 * bound.size
-    root = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
-    twist = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
-    matrix = root @ root.T + 0.3 * np.eye(unknown_count) + skew * (twist - twist.T)
+    random_factor = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
+    random_skew = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
+    matrix = random_factor @ random_factor.T + 0.3 * np.eye(unknown_count) + skew * (random_skew - random_skew.T)
     inverse = np.linalg.inv(matrix)
     modes = np.zeros((0, 2, bound.size))
     if forces is not None:
@@ -37,7 +37,7 @@ def problem(
         apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
         bound=bound,
-        prescribed_slip=rigid,
+        prescribed_slip=rigid_slip,
         modes=modes,
         resultant_weights=modes,
         resultants=np.zeros(0) if forces is None else forces,
@@ -51,13 +51,13 @@ def check_law(request: CoulombProblem, solution: CoulombSolution) -> None:
     slip = request.slip(solution.traction, solution.amplitudes)
     traction_size = np.hypot(*solution.traction)
     assert (traction_size <= request.bound * (1 + 1e-9)).all()
-    sticking = traction_size < request.bound * (1 - 1e-9)
+    is_sticking = traction_size < request.bound * (1 - 1e-9)
     scale = np.hypot(*request.prescribed_slip).max() + np.abs(solution.amplitudes).sum()
-    assert np.hypot(*slip[:, sticking]).max(initial=0.0) <= 1e-6 * scale
-    slip_along_traction = (slip * solution.traction).sum(axis=0)[~sticking]
-    assert (slip_along_traction >= -1e-6 * scale * request.bound[~sticking]).all()
+    assert np.hypot(*slip[:, is_sticking]).max(initial=0.0) <= 1e-6 * scale
+    slip_along_traction = (slip * solution.traction).sum(axis=0)[~is_sticking]
+    assert (slip_along_traction >= -1e-6 * scale * request.bound[~is_sticking]).all()
     assert np.allclose(
-        slip_along_traction, (np.hypot(*slip) * traction_size)[~sticking], atol=1e-6 * scale * request.bound.max()
+        slip_along_traction, (np.hypot(*slip) * traction_size)[~is_sticking], atol=1e-6 * scale * request.bound.max()
     )
 
 
@@ -67,7 +67,7 @@ def check_law(request: CoulombProblem, solution: CoulombSolution) -> None:
 def test_the_law_holds_from_stick_to_full_sliding(slip_scale: float, skew: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
     bound = rng.uniform(0.2, 1.0, 24)
-    request = problem(slip_scale * rng.standard_normal((2, 24)), bound, skew=skew, seed=seed)
+    request = make_problem(slip_scale * rng.standard_normal((2, 24)), bound, skew=skew, seed=seed)
     computed = solve_coulomb(request)
     assert computed.converged
     check_law(request, computed)
@@ -77,7 +77,7 @@ def test_the_law_holds_from_stick_to_full_sliding(slip_scale: float, skew: float
 def test_rigid_slip_satisfies_prescribed_forces(force_fraction: float) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
     force = force_fraction * bound.sum() * np.array([0.6, 0.8])
-    request = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
+    request = make_problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
     computed = solve_coulomb(request)
     assert computed.converged
     check_law(request, computed)
@@ -87,16 +87,16 @@ def test_rigid_slip_satisfies_prescribed_forces(force_fraction: float) -> None:
 def test_guess_changes_steps_only() -> None:
     rng = np.random.default_rng(7)
     bound = rng.uniform(0.2, 1.0, 40)
-    request = problem(rng.standard_normal((2, 40)), bound, skew=0.5)
+    request = make_problem(rng.standard_normal((2, 40)), bound, skew=0.5)
     baseline = solve_coulomb(request)
-    guessed = solve_coulomb(request, Guess(baseline.traction, baseline.amplitudes))
-    assert guessed.steps < baseline.steps
-    assert guessed.traction == pytest.approx(baseline.traction, abs=1e-6)
+    guessed_solution = solve_coulomb(request, Guess(baseline.traction, baseline.amplitudes))
+    assert guessed_solution.steps < baseline.steps
+    assert guessed_solution.traction == pytest.approx(baseline.traction, abs=1e-6)
 
 
 def test_unconverged_solution_is_reported() -> None:
     rng = np.random.default_rng(0)
-    request = problem(rng.standard_normal((2, 24)), rng.uniform(0.2, 1.0, 24))
+    request = make_problem(rng.standard_normal((2, 24)), rng.uniform(0.2, 1.0, 24))
     assert not solve_coulomb(CoulombProblem(**{**vars(request), "max_steps": 1})).converged
 
 
@@ -115,21 +115,21 @@ def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     """The rigid slip along one axis is prescribed and large; the rigid motions of force and moment leave no stick."""
     rng = np.random.default_rng(3)
     bound = rng.uniform(0.2, 1.0, 12)
-    rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
-    request = problem(rigid, bound, skew=0.5)
+    rigid_slip = np.stack([np.zeros(12), np.full(12, 30.0)])
+    request = make_problem(rigid_slip, bound, skew=0.5)
     modes = np.zeros((2, 2, 12))
     modes[0, 0] = 1.0
     modes[1] = length * rng.standard_normal((2, 12))
-    requested = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
-    request = replace(request, modes=modes, resultant_weights=modes, resultants=requested)
+    requested_forces = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
+    request = replace(request, modes=modes, resultant_weights=modes, resultants=requested_forces)
     computed = solve_coulomb(request)
     assert computed.converged
     assert not computed.sticks.any()
-    assert computed.traction[0].sum() == pytest.approx(requested[0], rel=1e-6)
-    assert (modes[1] * computed.traction).sum() == pytest.approx(requested[1], rel=1e-6)
+    assert computed.traction[0].sum() == pytest.approx(requested_forces[0], rel=1e-6)
+    assert (modes[1] * computed.traction).sum() == pytest.approx(requested_forces[1], rel=1e-6)
 
 
-def test_first_fraction_of_cells() -> None:
+def test_select_first_keeps_first_fraction_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
     assert _select_first(cells, 1.0) is cells
     for fraction, cell_count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
@@ -140,7 +140,7 @@ def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
     """A cell just below its bound counts as slipping, a cell without traction as sticking; one step suffices."""
     rng = np.random.default_rng(7)
     bound = rng.uniform(0.2, 1.0, 40)
-    request = replace(problem(rng.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
+    request = replace(make_problem(rng.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
     baseline = solve_coulomb(replace(request, max_steps=40))
     perturbed_traction = np.where(baseline.sticks, 1.0, 1 - 1e-7) * baseline.traction
     for guess in (baseline.traction, perturbed_traction):
@@ -157,9 +157,9 @@ def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]
     for seed in range(12):
         rng = np.random.default_rng(seed)
         bound = rng.uniform(0.2, 1.0, 24)
-        requested = rng.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
-        rigid = rng.uniform(0.1, 2.0) * rng.standard_normal((2, 24))
-        request = problem(rigid, bound, forces=requested, skew=0.2 * (seed % 6), seed=seed)
+        requested_forces = rng.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        rigid_slip = rng.uniform(0.1, 2.0) * rng.standard_normal((2, 24))
+        request = make_problem(rigid_slip, bound, forces=requested_forces, skew=0.2 * (seed % 6), seed=seed)
 
         def apply_compliance(traction: FloatArray, request: CoulombProblem = request) -> FloatArray:
             applications.append(1)
@@ -173,14 +173,15 @@ def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]
 
 
 def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a compliance that changes with each application three cells cycle: the share of changed cells decreases."""
+    """A compliance that changes with each application makes three cells cycle: the fraction of changed cells
+    decreases."""
     rng = np.random.default_rng(0)
-    request = problem(rng.standard_normal((2, 3)), np.ones(3))
+    request = make_problem(rng.standard_normal((2, 3)), np.ones(3))
     fractions: list[float] = []
 
-    def record_selection(cells: BoolArray, share: float) -> BoolArray:
-        fractions.append(share)
-        return _select_first(cells, share)
+    def record_selection(cells: BoolArray, selected_fraction: float) -> BoolArray:
+        fractions.append(selected_fraction)
+        return _select_first(cells, selected_fraction)
 
     monkeypatch.setattr(coulomb, "_select_first", record_selection)
     random_problem = replace(
@@ -199,14 +200,16 @@ def test_prescribed_forces_meet_tolerance_of_full_sliding(seed: int) -> None:
     """The tolerance of the forces is relative to full sliding, in any unit of force."""
     rng = np.random.default_rng(seed)
     bound = rng.uniform(0.2, 1.0, 24)
-    complete = problem(rng.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
+    full_problem = make_problem(
+        rng.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed
+    )
     for unit in (1e-6, 1.0, 1e6):
         request = replace(
-            complete,
-            resultant_weights=unit * complete.resultant_weights,
-            resultants=unit * complete.resultants,
+            full_problem,
+            resultant_weights=unit * full_problem.resultant_weights,
+            resultants=unit * full_problem.resultants,
             tolerance=1e-3,
         )
         computed = solve_coulomb(request)
         assert computed.converged
-        assert np.abs(computed.traction.sum(axis=1) - complete.resultants).max() <= 1e-3 * bound.sum()
+        assert np.abs(computed.traction.sum(axis=1) - full_problem.resultants).max() <= 1e-3 * bound.sum()

@@ -1,4 +1,4 @@
-"""Continuation in steps of prescribed forces, where Newton's method does not converge at once."""
+"""Continuation in steps of the prescribed forces, for problems where Newton's method fails from zero."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from contactstudy.contact.rolling.coulomb import (
     solve_coulomb,
     solve_with_continuation,
 )
-from tests.contact.rolling.test_coulomb import check_law, problem
+from tests.contact.rolling.test_coulomb import check_law, make_problem
 
 
 def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
-    request = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
+    request = make_problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
     force_fractions: list[float] = []
 
     def solve_small_steps(trial_problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
@@ -36,11 +36,11 @@ def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -
     reached_fractions = [0.0]
     monkeypatch.setattr(coulomb, "solve_coulomb", solve_small_steps)
     request_of_many_steps = replace(request, max_steps=500)
-    original_guess = coulomb.Guess
+    create_guess = coulomb.Guess
 
     def record_guess(traction: np.ndarray, amplitudes: np.ndarray) -> Guess:
         reached_fractions.append(force_fractions[-1] if len(force_fractions) > 1 else 0.0)
-        return original_guess(traction, amplitudes)
+        return create_guess(traction, amplitudes)
 
     monkeypatch.setattr(coulomb, "Guess", record_guess)
     computed = solve_with_continuation(request_of_many_steps)
@@ -53,7 +53,7 @@ def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -
 
 def test_unreachable_forces_do_not_converge() -> None:
     bound = np.ones(6)
-    request = problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
+    request = make_problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
     assert not solve_with_continuation(replace(request, max_steps=200)).converged
 
 
@@ -61,11 +61,11 @@ def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPat
     """The resultants change linearly from those of zero unknown slip to the prescribed ones, in adaptive steps."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     rng = np.random.default_rng(6)
-    requested = 0.5 * bound.sum() * np.array([0.6, 0.8])
-    request = replace(problem(rng.standard_normal((2, 12)), bound, forces=requested), max_steps=500)
+    requested_forces = 0.5 * bound.sum() * np.array([0.6, 0.8])
+    request = replace(make_problem(rng.standard_normal((2, 12)), bound, forces=requested_forces), max_steps=500)
     fractions: list[float] = []
     step_counts: list[int] = []
-    fails = [True, True, False, False, True, True, True, False, False]
+    step_fails = [True, True, False, False, True, True, True, False, False]
     first_resultants = np.zeros(2)
 
     def record_and_solve(trial_problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
@@ -79,15 +79,15 @@ def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPat
         if len(step_counts) > 1:
             fraction = (
                 (trial_problem.resultants - first_resultants)
-                @ (requested - first_resultants)
-                / ((requested - first_resultants) @ (requested - first_resultants))
+                @ (requested_forces - first_resultants)
+                / ((requested_forces - first_resultants) @ (requested_forces - first_resultants))
             )
             assert trial_problem.resultants == pytest.approx(
-                first_resultants + fraction * (requested - first_resultants)
+                first_resultants + fraction * (requested_forces - first_resultants)
             )
             fractions.append(float(fraction))
-        failed = fails.pop(0) if fails else False
-        return replace(computed, steps=steps, converged=not failed)
+        step_failed = step_fails.pop(0) if step_fails else False
+        return replace(computed, steps=steps, converged=not step_failed)
 
     monkeypatch.setattr(coulomb, "solve_coulomb", record_and_solve)
     computed = solve_with_continuation(request)

@@ -13,7 +13,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact import ContactSettings
 from contactstudy.contact.rolling.coulomb import CoulombProblem, solve_coulomb
 from contactstudy.fields.surface import SurfaceOperator
-from tests.contact.rolling.test_coulomb import check_law, problem
+from tests.contact.rolling.test_coulomb import check_law, make_problem
 
 CELLS = 24
 
@@ -23,7 +23,7 @@ def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, force
     rng = np.random.default_rng(seed)
     bound, areas = pressure * rng.uniform(0.2, 1.0, CELLS), rng.uniform(0.2, 2.0, CELLS)
     prescribed = 0.6 * float((areas * bound).sum()) * np.array([0.6, -0.8]) if forces else None
-    template = problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=prescribed, seed=seed)
+    template = make_problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=prescribed, seed=seed)
     columns = [
         template.apply_compliance(unit_traction.reshape(2, CELLS)).ravel() for unit_traction in np.eye(2 * CELLS)
     ]

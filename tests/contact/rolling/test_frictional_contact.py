@@ -1,4 +1,4 @@
-"""Stick and slip of whole contacts: motions, symmetry, coupling, free ends, and rejected input."""
+"""Stick and slip of contacts: motions, symmetry, coupling, free ends, and invalid input."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from tests.contact.rolling.motions import FRICTION, LOAD, MOTIONS
 
 STEEL = Material(0.91, 0.3)
 HALF_SPACE = HalfSpace(material=STEEL)
-PAIR = Counterbody(HALF_SPACE)
+EQUAL_HALF_SPACE = Counterbody(HALF_SPACE)
 
 
-def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
+def make_ball_gap(cells: int = 26, half_window: float = 1.3, centre_x: float = 0.0) -> xr.DataArray:
     """Gap of a ball with a contact radius of about 1."""
-    positions = reach * ((np.arange(cells) + 0.5) / cells * 2 - 1)
+    positions = half_window * ((np.arange(cells) + 0.5) / cells * 2 - 1)
     return xr.DataArray(
-        0.05 * ((positions[:, None] - off) ** 2 + positions**2),
+        0.05 * ((positions[:, None] - centre_x) ** 2 + positions**2),
         coords={"x": positions, "y": positions},
         dims=("x", "y"),
     )
@@ -45,7 +45,13 @@ def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
 
 def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
-    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF_SPACE} | keywords
+    arguments = {
+        "counterbody": EQUAL_HALF_SPACE,
+        "gap": make_ball_gap(),
+        "load": LOAD,
+        "friction": FRICTION,
+        "body": HALF_SPACE,
+    } | keywords
     settings_values = {
         name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments
     }
@@ -54,19 +60,21 @@ def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
 
 
 def check_law(result: xr.Dataset) -> None:
-    """Check Coulomb's law in each cell, from the returned values alone."""
+    """Check Coulomb's law in each cell of a result."""
     assert result.converged
     traction_size, slip = np.hypot(result.traction_x, result.traction_y), np.hypot(result.slip_x, result.slip_y)
     bound = FRICTION * result.pressure
-    largest = float(bound.max())
-    assert float((traction_size - bound).max()) < 1e-6 * largest
-    stick = result.stick.astype(bool)
-    assert float(slip.where(stick, 0.0).max()) == 0.0
-    slips = (~stick) & (result.pressure > 0)
-    assert float(np.abs(traction_size - bound).where(slips, 0.0).max()) < 1e-6 * largest
-    assert float(slip.where(slips, 1.0).min()) > 0.0
+    max_bound = float(bound.max())
+    assert float((traction_size - bound).max()) < 1e-6 * max_bound
+    is_sticking = result.stick.astype(bool)
+    assert float(slip.where(is_sticking, 0.0).max()) == 0.0
+    is_slipping = (~is_sticking) & (result.pressure > 0)
+    assert float(np.abs(traction_size - bound).where(is_slipping, 0.0).max()) < 1e-6 * max_bound
+    assert float(slip.where(is_slipping, 1.0).min()) > 0.0
     slip_work = result.traction_x * result.slip_x + result.traction_y * result.slip_y
-    assert float(np.abs(slip_work - traction_size * slip).where(slips, 0.0).max()) <= 1e-5 * largest * float(slip.max())
+    assert float(np.abs(slip_work - traction_size * slip).where(is_slipping, 0.0).max()) <= 1e-5 * max_bound * float(
+        slip.max()
+    )
     for name in ("bound_error", "slip_error", "force_error"):
         assert float(result[name]) < 1e-6
 
@@ -78,27 +86,27 @@ def test_coulomb_law_holds(motion: Rolling | Shift) -> None:
     area = float(result.x[1] - result.x[0]) * float(result.y[1] - result.y[0])
     forces = [float(result[f"traction_{axis}"].sum()) * area for axis in "xy"]
     assert [float(result.force_x), float(result.force_y)] == pytest.approx(forces, rel=1e-9, abs=1e-12)
-    turning = result.traction_y * result.x - result.traction_x * result.y
-    assert float(result.moment_z) == pytest.approx(float(turning.sum()) * area, rel=1e-9, abs=1e-12)
+    moment_density = result.traction_y * result.x - result.traction_x * result.y
+    assert float(result.moment_z) == pytest.approx(float(moment_density.sum()) * area, rel=1e-9, abs=1e-12)
     for name in ("force_x", "force_y", "moment_z"):
-        requested = getattr(motion, name, None)
-        if requested is not None:
-            assert float(result[name]) == pytest.approx(requested, abs=1e-6 * FRICTION * LOAD)
+        prescribed_value = getattr(motion, name, None)
+        if prescribed_value is not None:
+            assert float(result[name]) == pytest.approx(prescribed_value, abs=1e-6 * FRICTION * LOAD)
 
 
 def test_slip_follows_from_displacements() -> None:
     """The slip of a shift equals the rigid shift minus the surfaces' displacement, from the public operator."""
     result = solve_rolling(Shift(y=0.012, x=0.005))
-    shifted = surface_displacement(
+    displacements = surface_displacement(
         HALF_SPACE, 0 * result.pressure, traction_x=result.traction_x, traction_y=result.traction_y, components="xy"
     )
-    slips = (result.pressure > 0) & ~result.stick.astype(bool)
+    is_slipping = (result.pressure > 0) & ~result.stick.astype(bool)
     for axis, shift in (("x", 0.005), ("y", 0.012)):
-        expected = shift - 2 * shifted[f"displacement_{axis}"]
-        assert float(np.abs(result[f"slip_{axis}"] - expected).where(slips).max()) < 1e-9
+        expected = shift - 2 * displacements[f"displacement_{axis}"]
+        assert float(np.abs(result[f"slip_{axis}"] - expected).where(is_slipping).max()) < 1e-9
     # The same force, prescribed, causes the same shift.
-    repeated = solve_rolling(Shift(force_y=float(result.force_y), force_x=float(result.force_x)))
-    assert [float(repeated.shift_x), float(repeated.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
+    force_result = solve_rolling(Shift(force_y=float(result.force_y), force_x=float(result.force_x)))
+    assert [float(force_result.shift_x), float(force_result.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
 
 
 def test_prescribed_force_reproduces_creepage() -> None:
@@ -131,9 +139,9 @@ def test_sticking_cells_are_at_leading_edge() -> None:
     """Rolling along +y, material enters at the leading edge without traction and sticks first."""
     result = solve_rolling(Rolling(longitudinal_creepage=0.01))
     middle_column = result.isel(x=13)
-    sticks = result.y.values[middle_column.stick.values.astype(bool)]
-    slips = result.y.values[(middle_column.pressure.values > 0) & ~middle_column.stick.values.astype(bool)]
-    assert sticks.min() > slips.max()
+    sticking_y = result.y.values[middle_column.stick.values.astype(bool)]
+    slipping_y = result.y.values[(middle_column.pressure.values > 0) & ~middle_column.stick.values.astype(bool)]
+    assert sticking_y.min() > slipping_y.max()
     assert float(result.force_y) > 0
 
 
@@ -141,16 +149,18 @@ def test_sticking_cells_are_at_leading_edge() -> None:
     "motion", [Rolling(longitudinal_creepage=0.008, spin=0.01), Shift(y=0.012)], ids=["roll", "shift"]
 )
 def test_material_mismatch_causes_slip(motion: Rolling | Shift) -> None:
-    rigid = solve_rolling(motion, counterbody=None)
-    check_law(rigid)
-    coupled = solve_rolling(motion, counterbody=None, coupled=True)
-    check_law(coupled)
-    change = np.abs(coupled.pressure - rigid.pressure).max() / rigid.pressure.max()
+    uncoupled_rigid = solve_rolling(motion, counterbody=None)
+    check_law(uncoupled_rigid)
+    coupled_rigid = solve_rolling(motion, counterbody=None, coupled=True)
+    check_law(coupled_rigid)
+    change = np.abs(coupled_rigid.pressure - uncoupled_rigid.pressure).max() / uncoupled_rigid.pressure.max()
     assert 1e-3 < float(change) < 0.2
-    assert float(coupled.penetration_error) < 1e-5
-    uncoupled = solve_rolling(motion)
-    unchanged = solve_rolling(motion, coupled=True)
-    assert float(np.abs(uncoupled.pressure - unchanged.pressure).max()) < 1e-9 * float(uncoupled.pressure.max())
+    assert float(coupled_rigid.penetration_error) < 1e-5
+    uncoupled_equal = solve_rolling(motion)
+    coupled_equal = solve_rolling(motion, coupled=True)
+    assert float(np.abs(uncoupled_equal.pressure - coupled_equal.pressure).max()) < 1e-9 * float(
+        uncoupled_equal.pressure.max()
+    )
 
 
 def test_free_rolling_of_different_bodies_has_creepage() -> None:
@@ -162,7 +172,7 @@ def test_free_rolling_of_different_bodies_has_creepage() -> None:
     assert float(np.hypot(result.traction_x, result.traction_y).max()) > 0
 
 
-ENDED: dict[str, Body] = {
+BODIES_WITH_ENDS: dict[str, Body] = {
     "quarter space": QuarterSpace(material=STEEL),
     "finite length": FiniteLengthSpace(length=2.6, material=STEEL),
 }
@@ -172,7 +182,7 @@ ENDED: dict[str, Body] = {
     ("name", "motion"), [("quarter space", "shift"), ("finite length", "all"), ("finite length", "forces")]
 )
 def test_coulomb_law_holds_at_free_ends(name: str, motion: str) -> None:
-    body, gap = ENDED[name], ball(26)
+    body, gap = BODIES_WITH_ENDS[name], make_ball_gap(26)
     gap = gap.assign_coords(x=gap.x + 1.3)
     counterbody = Counterbody(body) if isinstance(body, FiniteLengthSpace) else None
     check_law(solve_rolling(MOTIONS[motion], body=body, gap=gap, counterbody=counterbody))
@@ -197,14 +207,20 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
 def test_equal_flush_bodies_do_not_slip_under_pressure() -> None:
     grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    longer, equal_length = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
-    still = solve_contact(longer, gap, load=1.0, friction=0.1, counterbody=Counterbody(equal_length), motion=Rolling())
-    assert float(np.hypot(still.traction_x, still.traction_y).max()) < 1e-8 * float(still.pressure.max())
+    long_body, equal_body = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
+    flush_result = solve_contact(
+        long_body, gap, load=1.0, friction=0.1, counterbody=Counterbody(equal_body), motion=Rolling()
+    )
+    assert float(np.hypot(flush_result.traction_x, flush_result.traction_y).max()) < 1e-8 * float(
+        flush_result.pressure.max()
+    )
     short_counterbody = Counterbody(FiniteLengthSpace(length=2.0, material=STEEL), start=0.4)
-    shorter = gap.where((gap.x > 0.4) & (gap.x < 2.4), np.inf)
-    shifted = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=short_counterbody, motion=Rolling())
-    assert float(np.abs(shifted.traction_x).max()) > 0.03 * float(shifted.pressure.max())
-    assert float(shifted.friction_work) > 0
+    short_gap = gap.where((gap.x > 0.4) & (gap.x < 2.4), np.inf)
+    short_result = solve_contact(
+        long_body, short_gap, load=0.7, friction=0.1, counterbody=short_counterbody, motion=Rolling()
+    )
+    assert float(np.abs(short_result.traction_x).max()) > 0.03 * float(short_result.pressure.max())
+    assert float(short_result.friction_work) > 0
 
 
 def test_sticking_contact_has_no_friction_work() -> None:
@@ -228,10 +244,11 @@ def test_zero_friction_has_zero_traction() -> None:
 
 
 def test_history_of_shifts_continues_tractions() -> None:
-    """Mindlin and Deresiewicz (1953): unloading doubles the slip's reach; a closed cycle returns to its state."""
-    largest = 0.6 * FRICTION * LOAD
-    steps = [solve_rolling(Shift(force_y=largest))]
-    for force in (0.0, -largest, 0.0, largest):
+    """Mindlin and Deresiewicz (1953): unloading is a shift with twice the friction; a closed cycle returns to its
+    start."""
+    max_force = 0.6 * FRICTION * LOAD
+    steps = [solve_rolling(Shift(force_y=max_force))]
+    for force in (0.0, -max_force, 0.0, max_force):
         steps.append(solve_rolling(Shift(force_y=force), after=steps[-1]))
     loaded_step, unloaded_step, reversed_step, _, repeated_step = steps
     for step in steps:
@@ -239,17 +256,17 @@ def test_history_of_shifts_continues_tractions() -> None:
     bound = FRICTION * float(loaded_step.pressure.max())
     assert np.abs(loaded_step.traction_y + reversed_step.traction_y).max() < 1e-3 * bound
     assert np.abs(loaded_step.traction_y - repeated_step.traction_y).max() < 1e-3 * bound
-    # Without force tractions remain: slip back at the edge, the old direction inside.
+    # After unloading, tractions remain, reversed at the edge and along the first force inside.
     assert float(unloaded_step.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded_step.traction_y.max())
-    # Each half of a cycle has the shift of twice the friction and half the force, doubled.
+    # The shift of a half-cycle is twice that of the first loading.
     shift = float(loaded_step.shift_y)
-    reverse_shift = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
-    assert reverse_shift == pytest.approx(-2 * shift, rel=1e-3)
-    stepped = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
-    stepped = solve_rolling(Shift(force_y=largest), after=stepped)
-    assert np.abs(stepped.traction_y - loaded_step.traction_y).max() < 2e-3 * bound
-    unmoved = solve_rolling(Shift(), after=loaded_step)
-    assert np.abs(unmoved.traction_y - loaded_step.traction_y).max() < 1e-3 * bound
+    half_cycle_shift = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
+    assert half_cycle_shift == pytest.approx(-2 * shift, rel=1e-3)
+    two_step_result = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
+    two_step_result = solve_rolling(Shift(force_y=max_force), after=two_step_result)
+    assert np.abs(two_step_result.traction_y - loaded_step.traction_y).max() < 2e-3 * bound
+    repeated_result = solve_rolling(Shift(), after=loaded_step)
+    assert np.abs(repeated_result.traction_y - loaded_step.traction_y).max() < 1e-3 * bound
 
 
 def test_invalid_input_raises_error() -> None:
@@ -261,64 +278,66 @@ def test_invalid_input_raises_error() -> None:
         solve_rolling(Rolling(force_y=0.0), friction=0.0)
     with pytest.raises(InvalidInputError, match=r"force_y, moment_z = .*force_y = .* N, moment_z = .* N m"):
         solve_rolling(Rolling(force_y=0.9 * FRICTION * LOAD, moment_z=0.4 * FRICTION * LOAD))
-    shifted = solve_rolling(Shift(y=0.01))
+    shifted_result = solve_rolling(Shift(y=0.01))
     with pytest.raises(InvalidInputError, match="rolling is steady"):
-        solve_rolling(Rolling(), after=shifted)
+        solve_rolling(Rolling(), after=shifted_result)
     with pytest.raises(InvalidInputError, match=r"after = .*cells"):
-        solve_rolling(Shift(y=0.01), after=shifted, gap=ball(20))
+        solve_rolling(Shift(y=0.01), after=shifted_result, gap=make_ball_gap(20))
     with pytest.raises(InvalidInputError, match="after = 'without traction_x'"):
-        solve_rolling(Shift(y=0.01), after=shifted.drop_vars("traction_x"))
+        solve_rolling(Shift(y=0.01), after=shifted_result.drop_vars("traction_x"))
     with pytest.raises(InvalidInputError, match=r"load = 0.0.*positive"):
-        solve_rolling(Shift(y=0.01), after=shifted, load=0.0)
+        solve_rolling(Shift(y=0.01), after=shifted_result, load=0.0)
     with pytest.raises(InvalidInputError, match="motion = 'rolls'"):
         solve_rolling("rolls")  # type: ignore[arg-type]
     with pytest.raises(WindowError, match=r"last two cells along \+y"):
-        solve_rolling(Rolling(), gap=ball(26, 1.04))
+        solve_rolling(Rolling(), gap=make_ball_gap(26, 1.04))
 
 
-GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
+GRADED_GRID = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
 
 
 @pytest.mark.parametrize("name", ["all", "moment", "shift"])
 def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
-    """Coulomb's law and the resultants on them, close to those on uniform cells."""
+    """On graded cells Coulomb's law holds, and the resultants approximate those on uniform cells."""
     gap = xr.DataArray(
-        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
-        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
+        0.05 * (GRADED_GRID.x[:, None] ** 2 + GRADED_GRID.y**2),
+        coords={"x": GRADED_GRID.x, "y": GRADED_GRID.y, "x_width": ("x", GRADED_GRID.widths)},
         dims=("x", "y"),
     )
-    graded, uniform = solve_rolling(MOTIONS[name], gap=gap), solve_rolling(MOTIONS[name])
-    check_law(graded)
-    areas = GRADED.widths[:, None] * GRADED.dy
+    graded_result, uniform_result = solve_rolling(MOTIONS[name], gap=gap), solve_rolling(MOTIONS[name])
+    check_law(graded_result)
+    areas = GRADED_GRID.widths[:, None] * GRADED_GRID.dy
     for axis in "xy":
-        assert float((graded[f"traction_{axis}"] * areas).sum()) == pytest.approx(float(graded[f"force_{axis}"]))
+        assert float((graded_result[f"traction_{axis}"] * areas).sum()) == pytest.approx(
+            float(graded_result[f"force_{axis}"])
+        )
     scale = FRICTION * LOAD
-    for name, scale_size in {
+    for name, load_scale in {
         "force_x": scale,
         "force_y": scale,
         "moment_z": scale,
         "friction_work": 0.02 * scale,
     }.items():
-        assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * scale_size)
+        assert float(graded_result[name]) == pytest.approx(float(uniform_result[name]), abs=0.01 * load_scale)
 
 
 def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:
     gap = xr.DataArray(
-        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
-        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
+        0.05 * (GRADED_GRID.x[:, None] ** 2 + GRADED_GRID.y**2),
+        coords={"x": GRADED_GRID.x, "y": GRADED_GRID.y, "x_width": ("x", GRADED_GRID.widths)},
         dims=("x", "y"),
     )
     motion = Rolling(longitudinal_creepage=0.01, spin=0.01, model="fastsim")
-    graded, uniform = solve_rolling(motion, gap=gap), solve_rolling(motion)
-    assert float(graded.force_y) == pytest.approx(float(uniform.force_y), abs=0.01 * FRICTION * LOAD)
+    graded_result, uniform_result = solve_rolling(motion, gap=gap), solve_rolling(motion)
+    assert float(graded_result.force_y) == pytest.approx(float(uniform_result.force_y), abs=0.01 * FRICTION * LOAD)
 
 
-def test_convergence_warning() -> None:
+def test_unconverged_tractions_warn() -> None:
     motion = Rolling(longitudinal_creepage=0.01)
-    pressure = solve_rolling(motion)
+    converged_result = solve_rolling(motion)
     with pytest.warns(ConvergenceWarning):
         result = solve_rolling(motion, max_iterations=2)
-    assert pressure.converged
+    assert converged_result.converged
     assert not result.converged
     assert float(result.slip_error) > 1e-6 or float(result.bound_error) > 1e-6
 
@@ -326,15 +345,15 @@ def test_convergence_warning() -> None:
 def test_reference_x_is_middle_of_finite_gap() -> None:
     """Further cells with an infinite gap, and another position along x, change no moment and no spin."""
     motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
-    baseline, gap = solve_rolling(motion, gap=ball(off=0.2)), ball(off=0.2)
+    baseline, gap = solve_rolling(motion, gap=make_ball_gap(centre_x=0.2)), make_ball_gap(centre_x=0.2)
     step = float(gap.x[1] - gap.x[0])
-    wider = np.concatenate([gap.x.values, gap.x.values[-1] + step * np.arange(1.0, 9.0)]) + 5.0
-    frictionless = xr.DataArray(
-        np.vstack([gap.values, np.full((8, gap.y.size), np.inf)]), coords={"x": wider, "y": gap.y}, dims=("x", "y")
+    wider_x = np.concatenate([gap.x.values, gap.x.values[-1] + step * np.arange(1.0, 9.0)]) + 5.0
+    wider_gap = xr.DataArray(
+        np.vstack([gap.values, np.full((8, gap.y.size), np.inf)]), coords={"x": wider_x, "y": gap.y}, dims=("x", "y")
     )
-    variant = solve_rolling(motion, gap=frictionless)
+    wide_result = solve_rolling(motion, gap=wider_gap)
     for name in ("moment_z", "force_y", "friction_work"):
-        assert float(variant[name]) == pytest.approx(float(baseline[name]), rel=1e-5)
+        assert float(wide_result[name]) == pytest.approx(float(baseline[name]), rel=1e-5)
 
 
 def test_sticking_part_is_relative_to_loaded_area() -> None:
@@ -347,7 +366,7 @@ def test_sticking_part_is_relative_to_loaded_area() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])
 def test_pressure_and_tractions_of_a_large_spin_converge(poisson: float, spin: float) -> None:
-    """Sliding columns or leading edges from each pressure would alternate between two states."""
+    """Columns and leading edges chosen anew for each pressure would alternate between two choices."""
     steel = Material(210e9, poisson)
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=210e9 / 0.91)
     case = Case(

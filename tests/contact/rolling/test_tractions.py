@@ -35,7 +35,7 @@ EDGES = {
     "nested": np.linspace(-1.3, 1.3, 49),
 }
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure: powers of two, which change no digits."""
+"""Units of length and pressure: powers of two have no rounding errors."""
 
 POWERS = {"spin": (-1, 0), "force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1)}
 """Powers of length and pressure in the prescribed values of a motion: creepages have none, shifts are lengths."""
@@ -73,11 +73,11 @@ def solve_friction(
 def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """List with an entry per application of the operator to tractions."""
     calls: list[int] = []
-    original = SurfaceOperator.compute_displacements
+    original_displacements = SurfaceOperator.compute_displacements
 
     def count_application(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
         calls.extend([1] * (Load.ALONG_X in loads))
-        return original(self, loads, directions)
+        return original_displacements(self, loads, directions)
 
     monkeypatch.setattr(SurfaceOperator, "compute_displacements", count_application)
     return calls
@@ -97,7 +97,7 @@ def test_applications_of_the_operator_are_few(
     assert sums[Shift] < limits[1]
 
 
-def value_of(tractions: Tractions, name: str) -> FloatArray | float:
+def get_value(tractions: Tractions, name: str) -> FloatArray | float:
     return tractions.resultants[name] if name in tractions.resultants else getattr(tractions, name)
 
 
@@ -115,15 +115,15 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
         solve_friction(motion, edges, other_units=True).tractions,
     )
     assert baseline.steps == variant.steps
-    rolls = isinstance(motion, Rolling)
-    units = {"traction": (0, 1), "slip": (0, 0) if rolls else (1, 0), "work": (2, 1) if rolls else (3, 1)}
+    is_rolling = isinstance(motion, Rolling)
+    units = {"traction": (0, 1), "slip": (0, 0) if is_rolling else (1, 0), "work": (2, 1) if is_rolling else (3, 1)}
     for name, (length, pressure) in (units | {key: POWERS[key] for key in ("force_x", "force_y", "moment_z")}).items():
-        value, unit = value_of(baseline, name), LENGTH**length * PRESSURE**pressure
+        value, unit = get_value(baseline, name), LENGTH**length * PRESSURE**pressure
         minimum = 1e-9 * np.abs(value).max() if np.ndim(value) else 1e-9 * FRICTION * LOAD
-        assert value_of(variant, name) / unit == pytest.approx(value, rel=1e-6, abs=minimum), name
-    for name, amount in baseline.amplitudes.items():
-        length, pressure = POWERS.get(name, (0, 0) if rolls else (1, 0))
-        assert variant.amplitudes[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
+        assert get_value(variant, name) / unit == pytest.approx(value, rel=1e-6, abs=minimum), name
+    for name, rigid_motion in baseline.amplitudes.items():
+        length, pressure = POWERS.get(name, (0, 0) if is_rolling else (1, 0))
+        assert variant.amplitudes[name] == pytest.approx(rigid_motion * LENGTH**length * PRESSURE**pressure, rel=1e-6)
     assert np.array_equal(baseline.sticks, variant.sticks)
     for name in ("bound_error", "slip_error", "force_error"):  # differences of the values above
         assert getattr(variant, name) == pytest.approx(getattr(baseline, name), rel=1e-3, abs=1e-9)
@@ -131,14 +131,14 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["forces", "shifting force", "moment"])
 def test_force_error_is_relative_to_largest_resultant(name: str) -> None:
-    """A solution that stops early has an error, which the tractions themselves and their places give."""
+    """The error of an early stop follows from the returned tractions and the positions of the cells."""
     tractions = solve_friction(MOTIONS[name], "uniform", max_steps=1, other_units=True).tractions
     motion, magnitude = scale_units(MOTIONS[name]), np.hypot(*tractions.traction) * (0.1 * LENGTH) ** 2
     centres = 0.1 * LENGTH * (np.arange(26) - 12.5)
     arm = np.abs(centres - 0.1 * LENGTH)[:, None] + np.abs(centres)  # spin and moment refer to x = 0.1
     sizes = {"force_x": magnitude, "force_y": magnitude, "moment_z": arm * magnitude}
-    prescribed = {key: getattr(motion, key) for key in sizes if getattr(motion, key, None) is not None}
-    errors = [abs(tractions.resultants[key] - value) / sizes[key].sum() for key, value in prescribed.items()]
+    prescribed_values = {key: getattr(motion, key) for key in sizes if getattr(motion, key, None) is not None}
+    errors = [abs(tractions.resultants[key] - value) / sizes[key].sum() for key, value in prescribed_values.items()]
     assert tractions.force_error == pytest.approx(max(errors), rel=1e-9)
     assert tractions.force_error > 1e-6
 
@@ -147,7 +147,7 @@ def test_force_error_is_relative_to_largest_resultant(name: str) -> None:
 def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment refer to the middle at any position along the axis."""
 
-    def contact_at(start: float) -> FrictionalContact:
+    def make_contact(start: float) -> FrictionalContact:
         grid = Grid.between(start + EDGES["uniform"], (-1.3, 1.3), 26)
         gap = 0.05 * ((grid.x[:, None] - start - 0.02) ** 2 + grid.y**2)
         body = HalfSpace(material=Material(0.91, 0.3))
@@ -155,10 +155,10 @@ def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) 
         request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=start + 0.1, coupled=False)
         return frictional_contact(shape, Settings(), request)
 
-    baseline, variant = contact_at(0.0).tractions, contact_at(8.0).tractions
+    baseline, variant = make_contact(0.0).tractions, make_contact(8.0).tractions
     assert variant.traction == pytest.approx(baseline.traction, abs=1e-6 * baseline.traction.max())
     for name in ("force_x", "force_y", "moment_z", "work"):
-        assert value_of(variant, name) == pytest.approx(value_of(baseline, name), rel=1e-5), name
+        assert get_value(variant, name) == pytest.approx(get_value(baseline, name), rel=1e-5), name
 
 
 @pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
@@ -172,15 +172,15 @@ def test_work_is_traction_times_slip(motion: Rolling) -> None:
         shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD))
         request = FrictionRequest(motion=model_motion, friction=FRICTION, reference_x=0.0, coupled=False)
         computed = frictional_contact(shape, Settings(), request).tractions
-        lost = float((computed.traction * computed.slip).sum() * grid.cell_area)
-        assert computed.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
-        pushed = (
+        slip_work = float((computed.traction * computed.slip).sum() * grid.cell_area)
+        assert computed.work == pytest.approx(slip_work, rel=1e-9 if model == "fastsim" else 0.03)
+        input_work = (
             computed.amplitudes["x"] * computed.resultants["force_x"]
             + computed.amplitudes["y"] * computed.resultants["force_y"]
         )
-        pushed += computed.amplitudes["spin"] * computed.resultants["moment_z"]
-        if model == "exact":  # the other work acts on the displacements by the pressure
-            assert abs(computed.work - pushed) > 0.2 * pushed
+        input_work += computed.amplitudes["spin"] * computed.resultants["moment_z"]
+        if model == "exact":  # displacements by the pressure also do work
+            assert abs(computed.work - input_work) > 0.2 * input_work
 
 
 @pytest.mark.parametrize("name", ["all", "shift", "forces"])
@@ -196,7 +196,7 @@ def test_steps_are_counted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert solve_friction(MOTIONS[name], "uniform").tractions.steps == sum(steps)
 
 
-def test_warnings_name_the_iteration() -> None:
+def test_warning_contains_unconverged_iteration() -> None:
     computed = solve_friction(MOTIONS["all"], "uniform")
     unconverged_tractions = replace(computed, tractions=replace(computed.tractions, converged=False))
     unconverged_pressure = replace(computed, contact=replace(computed.contact, converged=False))
@@ -218,14 +218,16 @@ def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(module, "law_violation", record_scale)
     computed = solve_friction(MOTIONS["moment"], "uniform")
-    rigid, grid = computed.tractions.amplitudes, computed.contact.shape.grid
-    along_x = rigid["x"] - rigid["spin"] * grid.y
-    along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
+    amplitudes, grid = computed.tractions.amplitudes, computed.contact.shape.grid
+    slip_x = amplitudes["x"] - amplitudes["spin"] * grid.y
+    slip_y = amplitudes["y"] + amplitudes["spin"] * (grid.x[:, None] - 0.1)
     is_loaded = computed.contact.pressure > 0
-    expected = np.hypot(along_x, along_y)[is_loaded].max()
-    mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
+    expected = np.hypot(slip_x, slip_y)[is_loaded].max()
+    reversed_spin_slip = np.hypot(
+        amplitudes["x"] + amplitudes["spin"] * grid.y, amplitudes["y"] - amplitudes["spin"] * (grid.x[:, None] - 0.1)
+    )
     assert scales[-1] == pytest.approx(expected, rel=0.03)
-    assert mirrored[is_loaded].max() != pytest.approx(expected, rel=0.04)
+    assert reversed_spin_slip[is_loaded].max() != pytest.approx(expected, rel=0.04)
 
 
 def test_fastsim_spin_sign_matches_exact_theory() -> None:
@@ -256,18 +258,18 @@ def test_coupled_contact_scales_with_unit() -> None:
 
 
 def test_slipping_leading_cell_has_slip() -> None:
-    """Under spin a part of a column sticks, but not its leading cell, which depends on the cell behind."""
+    """Under spin some columns stick behind a slipping leading cell, which depends on the cell behind it."""
     computed = solve_friction(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
     is_loaded, sticks = computed.contact.pressure > 0, computed.tractions.sticks
-    leading = is_loaded & ~np.pad(is_loaded, ((0, 0), (0, 1)))[:, 1:]
-    assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
+    is_leading = is_loaded & ~np.pad(is_loaded, ((0, 0), (0, 1)))[:, 1:]
+    assert (is_leading & ~sticks & sticks.any(axis=1)[:, None]).any()
     slip = np.hypot(*computed.tractions.slip)
     assert (slip[is_loaded & ~sticks] > 0).all()
-    assert (slip[leading & ~sticks] > 1e-3).all()
+    assert (slip[is_leading & ~sticks] > 1e-3).all()
 
 
 @pytest.mark.parametrize("columns", [1, 4])
-def test_contact_with_few_columns_and_many_rows(columns: int) -> None:
+def test_contact_with_few_columns_and_many_rows_converges(columns: int) -> None:
     """The coarser cells of a body between free ends have as few as one column."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
