@@ -95,7 +95,7 @@ def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
     result = dataset.copy()
     for name, variable in result.variables.items():
         variable.attrs = labels(str(name), coordinate=name in result.coords) | variable.attrs
-        if ERROR_KIND not in variable.attrs and (error := result.get(f"{name}_error")) is not None:
+        if ERROR_KIND not in variable.attrs and (error := result.variables.get(f"{name}_error")) is not None:
             variable.attrs[ERROR_KIND] = ESTIMATED if error.notnull().any() else NOT_ESTIMATED
     if title is not None:
         conventions = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}

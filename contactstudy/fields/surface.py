@@ -201,11 +201,10 @@ class ColumnsOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_distance(extent)
         columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=grid.cells_y, extent=extent, reference=reference)
-        kernels = {
-            response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
-        }
-        if ends is not None:
-            for response, kernel in kernels.items():
+        kernels = {response: columns.kernel(response, material.poisson) for response in responses}
+        for response, kernel in kernels.items():
+            kernel *= kernel_factor(material)
+            if ends is not None:
                 ends.add_to(kernel, response, edges)
         return cls(extent, grid, kernels)
 

@@ -221,7 +221,9 @@ class ColumnsRequest:
             far_kernel = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
             spectrum = even_spectrum(far_kernel) if even else odd_spectrum(far_kernel)
             means = images.means(edges - first_mirror)
-            kernel += means.T @ np.ascontiguousarray(spectrum.transpose(2, 0, 1)) @ means
+            # One wavenumber at a time, as the product of all is as large as the kernel. Speed.
+            for total, far_spectrum in zip(kernel, np.ascontiguousarray(spectrum.transpose(2, 0, 1)), strict=True):
+                total += means.T @ far_spectrum @ means
         return kernel
 
 

@@ -249,13 +249,12 @@ class EndCorrection:
     cell: float  # cell size along x
 
     def project_loads(self, load: Load, transform: ComplexArray) -> list[FloatArray]:
-        """Per parity, a load's transform on the graded positions: (real or imaginary part, wavenumber, position)."""
-        # A product of a kernel with one column at a time is three times faster than with both.
+        """Per parity, a load's transform on the graded positions: (wavenumber, position, real or imaginary part)."""
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
         folded = zip(self.moments[load], self._fold(pairs, load.sign_x), strict=True)
         return [
-            np.ascontiguousarray((moments @ parity_values).reshape(len(moments), -1, 2).transpose(2, 1, 0))
+            np.ascontiguousarray((moments @ parity_values).reshape(len(moments), -1, 2).transpose(1, 0, 2))
             for moments, parity_values in folded
         ]
 
@@ -268,14 +267,13 @@ class EndCorrection:
             projection_sum = np.zeros_like(next(iter(loads.values()))[index])
             for load, projected in loads.items():
                 response = Response(direction, load)
-                kernel, (real_part, imaginary_part) = self.kernels[response][index], projected[index]
+                product = np.matmul(self.kernels[response][index], projected[index])
                 if response.sign_y > 0:
-                    projection_sum[0] += _multiply_columns(kernel, real_part)
-                    projection_sum[1] += _multiply_columns(kernel, imaginary_part)
+                    projection_sum += product
                 else:  # times i
-                    projection_sum[0] -= _multiply_columns(kernel, imaginary_part)
-                    projection_sum[1] += _multiply_columns(kernel, real_part)
-            terms.append(moments.T @ np.ascontiguousarray(projection_sum.transpose(2, 1, 0)).reshape(len(moments), -1))
+                    projection_sum[..., 0] -= product[..., 1]
+                    projection_sum[..., 1] += product[..., 0]
+            terms.append(moments.T @ np.ascontiguousarray(projection_sum.transpose(1, 0, 2)).reshape(len(moments), -1))
         return np.asarray(self._unfold(terms, cell_count, direction.sign_x).view(np.complex128) / self.cell)
 
     def _fold(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
@@ -331,8 +329,3 @@ class EndCorrection:
             for direction in dict.fromkeys(chain.from_iterable(ends.samples))
         }
         return cls(parities, moments, ends.samples, grid.dx)
-
-
-def _multiply_columns(kernel: FloatArray, values: FloatArray) -> FloatArray:
-    """Product of each wavenumber's matrix (wavenumber, position, position) with the wavenumber's column."""
-    return np.asarray(np.matmul(kernel, values[..., None])[..., 0])

@@ -232,7 +232,8 @@ def iterate_contact(
     grid, prescribed, tolerance = shape.grid, shape.prescribed, settings.tolerance
     bodies = [shape.body] if shape.counterbody is None else [shape.body, shape.counterbody.body]
     finite = any(np.isfinite(body.depth) for body in bodies)
-    fixed = (finite and prescribed.approach is not None, finite and prescribed.load_position is None)
+    tilts = prescribed.load_position is None and 0 not in shape.reflections()
+    fixed = (finite and prescribed.approach is not None, finite and tilts)
     low, high = grid.x_range
     weights = np.array([1.0, high - low])
     trial, previous = np.zeros(2), np.zeros(2)

@@ -21,7 +21,8 @@ from contactstudy.checks import BoolArray, FloatArray
 Operator = Callable[[FloatArray], FloatArray]
 
 GUESS_TOLERANCE = 1e-6  # distance from the bound, over the bound, within which a cell of a guess slips. Speed.
-DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
+MIN_FRACTION = 0.1  # fraction of a Newton step below which the step is not halved again. Speed.
+ENERGY_ROUNDING = 1e-12  # relative rise of the energy that is rounding. Rounding.
 MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
 MIN_CONTINUATION_STEP = 1e-3  # least step of the resultants over the prescribed resultants. Speed.
 
@@ -45,6 +46,10 @@ class CoulombProblem:
     def slip(self, traction: FloatArray, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) under tractions."""
         return self.rigid_slip(amplitudes) - self.apply_compliance(traction)
+
+    def energy(self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray) -> float:
+        """Energy ``q B q / 2 - w q`` of tractions under a shift, to a factor; least under the law (43)."""
+        return -0.5 * float((self.relative_areas * traction * (self.rigid_slip(amplitudes) + slip)).sum())
 
     def rigid_slip(self, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) of rigid surfaces."""
@@ -130,20 +135,15 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         slip = problem.slip(traction, amplitudes)
     steps, converged, accuracy, violation = 0, False, 0.1, np.inf
     visited, change_fraction, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
-    least: Guess | None = None
     while steps < problem.max_steps and not converged:
         steps += 1
-        active_set = sticks
-        traction, amplitudes = _newton_step(
+        active_set, rigid_slip = sticks, problem.rigid_slip(amplitudes)
+        target, amplitudes = _newton_step(
             problem, traction, slip, sticks, amplitudes, diagonal=diagonal, accuracy=accuracy
         )
-        size = np.hypot(*traction)
-        begins_slip = (size > bound) & sticks
-        if len(problem.modes):
-            begins_slip = _select_largest_excess(begins_slip, size / bound, sticks)
+        slip = slip - rigid_slip + problem.rigid_slip(amplitudes)
+        traction, slip, begins_slip = _search_step(problem, traction, slip, sticks, target, amplitudes)
         begins_slip = _select_first(begins_slip, change_fraction)
-        traction = traction * np.where(~sticks | begins_slip, bound / np.where(size > 0, size, 1.0), 1.0)
-        slip = problem.slip(traction, amplitudes)
         begins_stick = _select_first(~sticks & ((slip * traction).sum(axis=0) < 0), change_fraction)
         sticks = (sticks & ~begins_slip) | begins_stick
         scale = problem.slip_scale(amplitudes)
@@ -161,15 +161,32 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             # A repeated active set halves the share of cells that may change at once, in the limit to one (Murty).
             change_fraction = 0.5 * change_fraction if sticks.tobytes() in visited else min(1.0, 2 * change_fraction)
             visited.add(sticks.tobytes())
-        if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
-            # Each descent continues the last one: the energy decreases whatever Newton's steps in between do.
-            least = balance_tractions(problem, least or Guess(limit_tractions(traction, bound), amplitudes), scale)
-            traction, amplitudes = least
-            slip, change_fraction = problem.slip(traction, amplitudes), 1.0
-            sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
     return CoulombSolution(
         traction=traction, slip=slip, sticks=sticks, amplitudes=amplitudes, steps=steps, converged=converged
     )
+
+
+def _search_step(
+    problem: CoulombProblem,
+    traction: FloatArray,
+    slip: FloatArray,
+    sticks: BoolArray,
+    target: FloatArray,
+    amplitudes: FloatArray,
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Step to Newton's tractions within the bound; return tractions, slip and the cells that begin to slip."""
+    # Under a shift the law (43) minimises an energy: without its decrease active sets may cycle. Rolling has no energy.
+    energy, fraction = problem.energy(traction, slip, amplitudes), 1.0
+    while True:
+        trial = traction + fraction * (target - traction)
+        size = np.hypot(*trial)
+        begins_slip = sticks & (size > problem.bound)
+        trial = trial * np.where(~sticks | begins_slip, problem.bound / np.where(size > 0, size, 1.0), 1.0)
+        trial_slip = problem.slip(trial, amplitudes)
+        trial_energy = problem.energy(trial, trial_slip, amplitudes)
+        if not problem.symmetric or trial_energy <= energy + ENERGY_ROUNDING * abs(energy) or fraction < MIN_FRACTION:
+            return trial, trial_slip, begins_slip
+        fraction *= 0.5
 
 
 def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
@@ -180,16 +197,6 @@ def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
     first = np.zeros_like(cells)
     first[indices[: max(1, int(fraction * indices.size))]] = True
     return first
-
-
-def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
-    """Select at most half of the sticking cells, rounded up: the cells with tractions farthest above the bound."""
-    # If all cells slipped at once, the rigid slip of a prescribed resultant would be nearly undetermined.
-    max_cells = (int(sticks.sum()) + 1) // 2
-    if exceeds.sum() <= max_cells:
-        return exceeds
-    min_excess = np.partition(excess[exceeds], -max_cells)[-max_cells]
-    return np.asarray(exceeds & (excess >= min_excess))
 
 
 def _unknown_basis(direction: FloatArray, sticks: BoolArray) -> Any:
@@ -277,76 +284,3 @@ def _diagonal(problem: CoulombProblem) -> FloatArray:
         unit[1, largest] = 1.0
         diagonal[cells] = abs(1.0 / problem.inverse(unit)[1, largest])
     return diagonal
-
-
-def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> Guess:
-    """Tractions under a shift as the minimum of ``q B q / 2 - w q`` for ``|q| <= g``, and the unknown rigid slips."""
-    # A descent of this convex energy along the slip, projected onto the bound, cannot cycle. Steps: Barzilai and
-    # Borwein, IMA J. Numer. Anal. 8 (1988) 141; Birgin, Martinez and Raydan, SIAM J. Optim. 10 (2000) 1196. The rigid
-    # slips of prescribed resultants maximise the least energy less the work of the resultants.
-    from scipy.optimize import minimize
-
-    traction, amplitudes = start
-    bound, areas, weights = problem.bound, problem.relative_areas, problem.resultant_weights
-
-    def minimize_energy(amplitudes: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        nonlocal traction
-        rigid = problem.rigid_slip(amplitudes)
-        traction, slip = descend_energy(
-            problem.apply_compliance, rigid - problem.apply_compliance(traction), traction, bound, areas
-        )
-        return traction, slip, rigid
-
-    if not amplitudes.size:
-        return Guess(minimize_energy(amplitudes)[0], amplitudes)
-    area = float((weights[0] / areas).max())
-    max_resultants = np.abs(weights).sum(axis=1) @ bound
-    unit = scale * float(max_resultants.max())
-
-    def dual_energy(scaled: FloatArray) -> tuple[float, FloatArray]:
-        tractions, slip, rigid = minimize_energy(scale * scaled)
-        energy = 0.5 * area * float((areas * tractions * (rigid + slip)).sum()) - float(
-            scale * scaled @ problem.resultants
-        )
-        return energy / unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
-
-    # The gradient is the error of the resultants over full sliding's resultants. Speed.
-    optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
-    amplitudes = np.asarray(scale * optimum.x)
-    return Guess(minimize_energy(amplitudes)[0], amplitudes)
-
-
-def limit_tractions(traction: FloatArray, bound: FloatArray) -> FloatArray:
-    """Tractions (2, cell), projected onto their bound where they exceed it."""
-    size = np.hypot(*traction)
-    return np.asarray(traction * np.where(size > bound, bound / np.where(size > 0, size, 1.0), 1.0))
-
-
-def descend_energy(
-    apply_compliance: Operator,
-    slip: FloatArray,
-    traction: FloatArray,
-    bound: FloatArray,
-    areas: FloatArray,
-    max_steps: int = 500,
-) -> tuple[FloatArray, FloatArray]:
-    """Minimise the energy from tractions (2, cell) within their bound and their slip; return tractions and slip."""
-
-    def product(first: FloatArray, second: FloatArray) -> float:
-        return float((areas * first * second).sum())
-
-    slip_change = apply_compliance(slip)
-    curvature = product(slip, slip_change)
-    step_length = product(slip, slip) / curvature if curvature > 0 else 0.0
-    for _ in range(max_steps):
-        change = limit_tractions(traction + step_length * slip, bound) - traction
-        if float(np.abs(change).max()) <= 1e-7 * float(bound.max()):  # Speed.
-            break
-        slip_change = apply_compliance(change)
-        curvature = product(change, slip_change)
-        # The energy is least between the current and the projected point, or at the projected point.
-        fraction = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
-        traction, slip = traction + fraction * change, slip - fraction * slip_change
-        if curvature > 0:
-            step_length = product(change, change) / curvature
-    return traction, slip

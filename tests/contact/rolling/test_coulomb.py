@@ -14,9 +14,7 @@ from contactstudy.contact.rolling.coulomb import (
     CoulombSolution,
     Guess,
     _select_first,
-    _select_largest_excess,
     law_violation,
-    limit_tractions,
     solve_coulomb,
 )
 
@@ -129,32 +127,6 @@ def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     assert not computed.sticks.any()
     assert computed.traction[0].sum() == pytest.approx(requested_forces[0], rel=1e-6)
     assert (modes[1] * computed.traction).sum() == pytest.approx(requested_forces[1], rel=1e-6)
-
-
-def test_limit_projects_tractions_onto_bound() -> None:
-    traction = np.array([[3.0, 0.3, 0.0, 0.0], [4.0, 0.4, 0.0, -2.0]])
-    computed = limit_tractions(traction, np.array([1.0, 1.0, 1.0, 0.5]))
-    assert computed == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
-
-
-@pytest.mark.parametrize("stick_count", [1, 2, 5, 6, 150, 400])
-def test_at_most_half_of_sticking_cells_slip(stick_count: int) -> None:
-    excess = np.random.default_rng(stick_count).uniform(0.5, 2.0, 400)
-    sticks = np.arange(400) < stick_count
-    exceeds_bound = (excess > 1) & sticks
-    computed = _select_largest_excess(exceeds_bound, excess, sticks)
-    assert computed.sum() == min(exceeds_bound.sum(), (stick_count + 1) // 2)
-    assert not (computed & ~exceeds_bound).any()
-    assert excess[computed].min(initial=9.0) >= excess[exceeds_bound & ~computed].max(initial=0.0)
-
-
-def test_half_of_cells_slip_in_any_order() -> None:
-    """Twenty orders of the numbers exclude a correct result by chance."""
-    for seed in range(20):
-        excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
-        computed = _select_largest_excess(excess > 1, excess, sticks)
-        assert computed.sum() == 1000
-        assert excess[computed].min() > excess[~computed].max()
 
 
 def test_select_first_keeps_first_fraction_of_cells() -> None:
