@@ -146,10 +146,10 @@ def test_contact_at_window_edge_raises_error(
 
 
 def solve_with_settings(
-    coupled_contact: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object
+    coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object
 ) -> None:
     """Contact with settings and arguments given as keywords."""
-    settings = ContactSettings(coupled=coupled_contact, tolerance=tolerance, max_iterations=max_iterations)
+    settings = ContactSettings(coupled=coupled, tolerance=tolerance, max_iterations=max_iterations)
     solve_contact(**arguments, settings=settings)  # type: ignore[arg-type]
 
 

@@ -18,12 +18,12 @@ from tests.contact.rolling.test_coulomb import check_law, make_problem
 CELLS = 24
 
 
-def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
+def make_graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
     """Cells of different sizes in some units, on which the compliance times the areas is symmetric."""
     rng = np.random.default_rng(seed)
     bound, areas = pressure * rng.uniform(0.2, 1.0, CELLS), rng.uniform(0.2, 2.0, CELLS)
-    prescribed = 0.6 * float((areas * bound).sum()) * np.array([0.6, -0.8]) if forces else None
-    template = make_problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=prescribed, seed=seed)
+    prescribed_forces = 0.6 * float((areas * bound).sum()) * np.array([0.6, -0.8]) if forces else None
+    template = make_problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=prescribed_forces, seed=seed)
     columns = [
         template.apply_compliance(unit_traction.reshape(2, CELLS)).ravel() for unit_traction in np.eye(2 * CELLS)
     ]
@@ -40,12 +40,12 @@ def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, force
     )
 
 
-def descend(request: CoulombProblem) -> FloatArray:
+def minimise_energy(request: CoulombProblem) -> FloatArray:
     """Minimise the energy by projected gradients of equal step lengths."""
     step_length = 1 / np.linalg.norm(
         [request.apply_compliance(unit_traction.reshape(2, CELLS)).ravel() for unit_traction in np.eye(2 * CELLS)], 2
     )
-    traction = np.zeros_like(request.prescribed_slip)
+    traction = np.zeros_like(request.rigid)
     for _ in range(4000):
         traction = traction + step_length * request.slip(traction, np.zeros(0))
         traction = traction * np.minimum(1.0, request.bound / np.maximum(np.hypot(*traction), 1e-300))
@@ -54,27 +54,27 @@ def descend(request: CoulombProblem) -> FloatArray:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_newton_minimises_energy(seed: int) -> None:
-    request = graded_problem(seed)
-    assert np.abs(solve_coulomb(request).traction - descend(request)).max() < 1e-5
+    request = make_graded_problem(seed)
+    assert np.abs(solve_coulomb(request).traction - minimise_energy(request)).max() < 1e-5
 
 
 @pytest.mark.parametrize(("unit", "pressure"), [(1e-6, 1.0), (1.0, 1.0), (1.0, 1e-9), (1e3, 1e9)])
 @pytest.mark.parametrize("forces", [False, True])
 def test_newton_converges_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
-    request = graded_problem(8, unit=unit, pressure=pressure, forces=forces)
+    request = make_graded_problem(8, unit=unit, pressure=pressure, forces=forces)
     computed = solve_coulomb(request)
     assert computed.converged
-    assert computed.steps == solve_coulomb(graded_problem(8, forces=forces)).steps
+    assert computed.steps == solve_coulomb(make_graded_problem(8, forces=forces)).steps
     check_law(request, computed)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_every_step_reduces_energy(seed: int) -> None:
-    request = graded_problem(seed)
+    request = make_graded_problem(seed)
     solutions = [solve_coulomb(replace(request, max_steps=steps)) for steps in range(1, 12)]
     energies = [request.energy(solution.traction, solution.slip, solution.amplitudes) for solution in solutions]
     assert (np.diff(energies) < 1e-12 * abs(energies[-1])).all()
-    assert energies[0] < request.energy(np.zeros_like(request.prescribed_slip), request.prescribed_slip, np.zeros(0))
+    assert energies[0] < request.energy(np.zeros_like(request.rigid), request.rigid, np.zeros(0))
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_shift_of_rigid_roller_between_ends_takes_few_applications(
     load: float,
     force: tuple[float, float],
 ) -> None:
-    """Active sets without an energy cycle here."""
+    """An iteration of active sets alone cycles on these cases."""
     steel = cs.Material(200e9, poisson)
     x = (np.arange(40) + 0.5) * length / 40
     y = (np.arange(24) - 11.5) * width / 24
