@@ -45,7 +45,7 @@ def minimise_energy(request: CoulombProblem) -> FloatArray:
     step_length = 1 / np.linalg.norm(
         [request.apply_compliance(unit_traction.reshape(2, CELLS)).ravel() for unit_traction in np.eye(2 * CELLS)], 2
     )
-    traction = np.zeros_like(request.rigid)
+    traction = np.zeros_like(request.prescribed_slip)
     for _ in range(4000):
         traction = traction + step_length * request.slip(traction, np.zeros(0))
         traction = traction * np.minimum(1.0, request.bound / np.maximum(np.hypot(*traction), 1e-300))
@@ -74,7 +74,7 @@ def test_every_step_reduces_energy(seed: int) -> None:
     solutions = [solve_coulomb(replace(request, max_steps=steps)) for steps in range(1, 12)]
     energies = [request.energy(solution.traction, solution.slip, solution.amplitudes) for solution in solutions]
     assert (np.diff(energies) < 1e-12 * abs(energies[-1])).all()
-    assert energies[0] < request.energy(np.zeros_like(request.rigid), request.rigid, np.zeros(0))
+    assert energies[0] < request.energy(np.zeros_like(request.prescribed_slip), request.prescribed_slip, np.zeros(0))
 
 
 @pytest.mark.parametrize(
