@@ -303,7 +303,7 @@ def test_page_suffix_is_checked(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("skip_encoding")
 def test_selected_values_determine_figure(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
-    assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
+    assert "The figure's title contains the value of coefficient of friction and roller profile" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     selected_titles = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *selected_titles]) == 0
