@@ -186,6 +186,8 @@ def test_stored_case(singular: xr.Dataset, tmp_path) -> None:
     assert case.body.material == STEEL
     with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
         solved_case(xr.Dataset())
+    with pytest.raises(InvalidInputError, match="JSON"):
+        solved_case(xr.Dataset(attrs={"contactstudy_inputs": "[" * 100_000}))
 
 
 def test_citations_of_a_result(singular: xr.Dataset) -> None:
