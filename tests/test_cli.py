@@ -182,7 +182,11 @@ def test_help_avoids_heavy_imports():
 @pytest.mark.parametrize(("output", "code"), [(">&-", 0), (">/dev/full", 2)])
 def test_missing_or_full_output_leaves_no_traceback(output, code):
     process = subprocess.run(
-        f"{sys.executable} -m contactstudy.cli --version {output}", shell=True, capture_output=True, text=True, cwd=ROOT
+        f"{sys.executable} -m contactstudy.cli plan studies/edge_effect.toml {output}",
+        shell=True,
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
     )
     assert (process.returncode, "Traceback" in process.stderr) == (code, False)
 
