@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import uuid
@@ -173,6 +174,22 @@ def name_argument(name: str) -> Iterator[None]:
         raise InvalidInputError(f"{name}.{error.parameter}", error.value, error.allowed, error.hint) from error
 
 
+MAX_TEXT = 100_000_000  # Characters of a study's file: some hundred profiles of 50 000 points
+
+
+def read_tables(source: Path | str, loads: Callable[[str], Any] = json.loads) -> Any:
+    """Read JSON or TOML from a file or a text; too many characters or nested tables raise a ValueError."""
+    if isinstance(source, Path):
+        with open(source, encoding="utf-8-sig") as file:
+            source = file.read(MAX_TEXT)
+    if len(source) >= MAX_TEXT:
+        raise ValueError(f"it has more than {MAX_TEXT:.0e} characters")
+    try:
+        return loads(source)
+    except RecursionError:
+        raise ValueError("nested too deeply for a study") from None
+
+
 @contextmanager
 def convert_os_errors(action: str) -> Iterator[None]:
     """Raise an error of the file system as a StoreError of the action that failed."""
@@ -193,7 +210,8 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
     temporary_path = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{TEMPORARY_SUFFIX}")
     with convert_os_errors(f"write {path}"):
         if path.exists() and not path.is_file():
-            yield path
+            with open(os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0)), "wb"):  # raises for an unread pipe
+                yield path
             return
         try:
             yield temporary_path

@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         if options.whole_process and options.action in (_report, _explore):
             gc.set_threshold(50_000)  # with Python's default, collection takes a tenth of the time of a page or report
         code: int = options.action(options)
-        sys.stdout.flush()
+        print(end="", flush=True)  # without an output `sys.stdout` is None
     except ContactStudyError as error:
         print(f"contactstudy: {error}", file=sys.stderr)
         return USAGE
@@ -61,10 +61,13 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         message = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
         print(f"contactstudy: {message}", file=sys.stderr)
         return 128 + (interrupt.signal_number if isinstance(interrupt, Terminated) else signal.SIGINT)
-    except BrokenPipeError:
-        # Otherwise Python would flush the closed output at exit, and fail.
+    except OSError as error:  # the output is closed or full
+        # Otherwise Python would flush the output at exit, and fail.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 128 + signal.SIGPIPE
+        if isinstance(error, BrokenPipeError):
+            return 128 + signal.SIGPIPE
+        print(f"contactstudy: {error}", file=sys.stderr)
+        return USAGE
     return code
 
 

@@ -179,6 +179,19 @@ def test_help_avoids_heavy_imports():
 
 
 @pytest.mark.system
+@pytest.mark.parametrize(("output", "code"), [(">&-", 0), (">/dev/full", 2)])
+def test_missing_or_full_output_leaves_no_traceback(output, code):
+    process = subprocess.run(
+        f"{sys.executable} -m contactstudy.cli plan studies/edge_effect.toml {output}",
+        shell=True,
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert (process.returncode, "Traceback" in process.stderr) == (code, False)
+
+
+@pytest.mark.system
 def test_closed_output_pipe_returns_code_141(study_file, tmp_path):
     """Like `contactstudy ... | head -1`: there is no error text, and the command writes all files."""
     for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):

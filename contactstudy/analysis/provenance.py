@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.arrays.variables import require
 from contactstudy.bodies.models import Body
 from contactstudy.case.case import Case
@@ -52,7 +53,7 @@ def with_provenance(
 def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
     """Return the table in an attribute of a Dataset, without entries of a wrong type; empty without the attribute."""
     try:
-        table = json.loads(dataset.attrs.get(name, "{}"))
+        table = checks.read_tables(dataset.attrs.get(name, "{}"))
     except (TypeError, ValueError):
         raise InvalidInputError(f"attribute {name}", str(dataset.attrs[name])[:60], "JSON") from None
     if not isinstance(table, dict):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hmac
-import json
 import logging
 import secrets
 import socket
@@ -216,7 +215,7 @@ def _title(path: Path) -> str:
     from contactstudy.analysis.provenance import study_title
 
     try:
-        return study_title(json.loads((path / "study.json").read_text(encoding="utf-8")), path.resolve().name)
+        return study_title(checks.read_tables(path / "study.json"), path.resolve().name)
     except (OSError, ValueError, TypeError, AttributeError):
         return path.resolve().name
 

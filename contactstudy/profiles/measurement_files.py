@@ -88,7 +88,7 @@ def describe_foreign_file(path: Path) -> str:
         try:
             with ZipFile(path) as archive:
                 names = archive.namelist()
-        except (OSError, BadZipFile, ValueError):
+        except (BadZipFile, OSError, ValueError, NotImplementedError):
             return ""
         if any(name.startswith("xl/") for name in names) or "content.xml" in names:
             return WORKBOOK_ADVICE
@@ -399,7 +399,7 @@ def _read_x3p(path: Path) -> Heights:
     try:
         with ZipFile(path) as archive:
             sizes = {entry.filename: entry.file_size for entry in archive.infolist()}
-    except (BadZipFile, OSError, ValueError) as error:
+    except (BadZipFile, OSError, ValueError, NotImplementedError) as error:  # NotImplementedError: a later version
         raise _path_error(path, "a readable x3p file", str(error)) from None
     for name, size in sizes.items():
         max_size = MAX_XML if name.endswith(".xml") else MAX_BYTES

@@ -281,8 +281,6 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
         raise StoreError(f"cannot read {path}: it is not a regular file")
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
-        if file.dimensions["case_id_length"].size != IDENTITY_LENGTH:
-            raise StoreError(f"cannot read {path}: it is not a batch of cases")
         selected_names = None if arrays is None else set(arrays)
         columns, ragged_arrays, attributes = {"status": np.array(STATUSES)[file["status"][:]]}, {}, {}
         for name, variable in file.variables.items():
@@ -298,13 +296,31 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: boo
         if parameters:
             shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
-        return Batch(
+        batch = Batch(
             cases=pd.DataFrame(columns, index=file["case_id"][:]),
             arrays=ragged_arrays,
             attributes=attributes,
             coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
             run_context=json.loads(file.getncattr(RUN_ATTRIBUTE)),
         )
+        if not _is_complete(batch, {name: file[name].size for name in ragged_arrays}):
+            raise ValueError("it is not a batch of cases")
+        return batch
+
+
+def _is_complete(batch: Batch, array_sizes: Mapping[str, int]) -> bool:
+    """Whether a batch from a file has the types and sizes of a written batch; a missing column raises."""
+    cases, is_text = batch.cases, pd.api.types.is_string_dtype
+    others = cases.drop(columns=["status", *TEXT_COLUMNS], errors="ignore").dtypes
+    return (
+        all(is_text(cases[name]) for name in ("message", "warnings", "time"))
+        and all(dtype.kind in "iuf" for dtype in (cases["run"].dtype, *others))
+        and all(isinstance(json.loads(text or "[]"), list) for text in {*cases["warnings"]})
+        and all(isinstance(value, str) for value in batch.run_context.values())
+        and cases.index.str.len().isin([IDENTITY_LENGTH]).all()
+        and batch.coordinates <= {*batch.arrays}
+        and all(batch.offsets(array.dims)[-1] == array_sizes[name] for name, array in batch.arrays.items())
+    )
 
 
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:

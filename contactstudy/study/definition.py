@@ -192,12 +192,10 @@ class Study:
         """
         path = Path(path)
         try:
-            content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+            content = checks.read_tables(path, tomllib.loads)
         except (OSError, ValueError) as error:  # ValueError: invalid TOML or UTF-8, or a number of thousands of digits
             reason = error.strerror if isinstance(error, OSError) and error.strerror else error
             raise StudyFileError(f"study file {path}: {reason}") from error
-        except RecursionError:
-            raise StudyFileError(f"study file {path}: tables or lists are nested too deeply to be read") from None
         return cls.from_mapping({"name": path.stem} | resolve_files(content, path.parent))
 
     @classmethod

@@ -220,6 +220,8 @@ def _loop_without_interrupts() -> Iterator[IOLoop]:
             runner.start()
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
+    # asyncio reports the errors of workers that an interrupt ended at their start when it deletes their tasks.
+    runner.loop.asyncio_loop.set_exception_handler(lambda loop, context: None)
     try:
         yield runner.loop
     finally:

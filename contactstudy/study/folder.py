@@ -209,8 +209,8 @@ class Folder:
         if path.exists() and not is_regular(path):
             raise StudyFileError(f"{path} is not a regular file")
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError) as error:
+            content = checks.read_tables(path)
+        except (OSError, ValueError) as error:
             remedy = "give the folder that `contactstudy run` wrote, such as results/NAME"
             if not self.path.exists():
                 reason = "it does not exist"
@@ -218,8 +218,6 @@ class Folder:
                 reason = f"it is a file; {remedy}"
             elif not path.exists():
                 reason = f"without study.json; {remedy}"
-            elif isinstance(error, RecursionError):
-                reason = "study.json: nested too deeply for a study"
             else:
                 reason = f"study.json: {getattr(error, 'strerror', None) or error}"
             raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error

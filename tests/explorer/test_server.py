@@ -60,7 +60,7 @@ def test_folder_without_study_raises(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert capsys.readouterr().out == ""
 
 
-@pytest.mark.parametrize("content", ["{", json.dumps({"name": "wrong", "base": {"no_such_parameter": 1}})])
+@pytest.mark.parametrize("content", ["{", "[" * 100_000, json.dumps({"name": "wrong", "base": {"no_such": 1}})])
 def test_unreadable_study_raises(tmp_path: Path, content: str) -> None:
     (tmp_path / "study.json").write_text(content)
     with pytest.raises(ContactStudyError, match=r"study\.json"):

@@ -9,7 +9,7 @@ import x3pio
 
 from contactstudy import ContactStudyError, InvalidInputError
 from contactstudy.profiles import measurement_files
-from contactstudy.profiles.measurement_files import Heights, read_heights, rotate_heights
+from contactstudy.profiles.measurement_files import Heights, read_heights, read_measurement, rotate_heights
 
 X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
 HEIGHTS = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
@@ -73,6 +73,12 @@ def test_unreadable_file_raises(tmp_path: Path) -> None:
     (tmp_path / "broken.x3p").write_bytes(b"PK\x03\x04 no such file")
     with pytest.raises(InvalidInputError, match=r"path = .*broken.x3p"):
         read_heights(tmp_path / "broken.x3p")
+    x3pio.write(tmp_path / "later.x3p", HEIGHTS.T, x_scale=2e-6, y_scale=3e-6)
+    data = (tmp_path / "later.x3p").read_bytes()
+    for name in ("later.x3p", "later.csv"):  # the entries need version 8.4 of the archive's format
+        (tmp_path / name).write_bytes(data.replace(b"PK\x01\x02\x14\x03\x14", b"PK\x01\x02\x14\x03\x54"))
+        with pytest.raises(InvalidInputError, match=rf"path = .*{name}"):
+            read_measurement(tmp_path / name, ("x",), ("height",))
     with pytest.raises(InvalidInputError, match=r"missing.x3p.*can be read"):
         read_heights(tmp_path / "missing.x3p")
     (tmp_path / "pipe.x3p").mkdir()

@@ -195,6 +195,8 @@ def test_stored_result_contains_case(singular_result: xr.Dataset, tmp_path) -> N
     assert case.body.material == STEEL
     with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
         solved_case(xr.Dataset())
+    with pytest.raises(InvalidInputError, match="JSON"):
+        solved_case(xr.Dataset(attrs={"contactstudy_inputs": "[" * 100_000}))
 
 
 def test_citations_depend_on_inputs_of_result(singular_result: xr.Dataset) -> None:

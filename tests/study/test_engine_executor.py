@@ -1,11 +1,13 @@
 """Tasks and their sizes; death of workers."""
 
+import asyncio
+import gc
 from unittest import mock
 
 import pytest
 
 from contactstudy.study import StudyFileError
-from contactstudy.study.engine import Engine, Tasks, Workers, execute
+from contactstudy.study.engine import Engine, Tasks, Workers, _loop_without_interrupts, execute
 from contactstudy.study.settings import RUN
 from contactstudy.study.worker import Task
 from tests.small_study import small_study
@@ -109,3 +111,18 @@ def test_connection_error_names_scheduler(monkeypatch, method, error):
     monkeypatch.setattr(client, method, mock.Mock(side_effect=error))
     with pytest.raises(StudyFileError, match="scheduler has gone away"):
         Workers(client, 1.0, print).find_usable(busy=True)
+
+
+def test_errors_of_deleted_tasks_are_silent(caplog):
+    """A worker that an interrupt ends at its start leaves a task with an error that nobody retrieves."""
+
+    async def fail():
+        raise RuntimeError("Nanny failed to start.")
+
+    async def leave_task():
+        await asyncio.wait([asyncio.create_task(fail())])
+
+    with _loop_without_interrupts() as loop:
+        asyncio.run_coroutine_threadsafe(leave_task(), loop.asyncio_loop).result(10)
+    gc.collect()
+    assert not caplog.records

@@ -171,6 +171,12 @@ def test_failed_write_keeps_previous_file(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_pipe_without_reader_raises(tmp_path):
+    os.mkfifo(tmp_path / "report.html")
+    with pytest.raises(StoreError, match=r"report\.html"), writing(tmp_path / "report.html"):
+        pass
+
+
 def test_cleaning_removes_only_unfinished_files(study, tmp_path):
     run(study, tmp_path)
     unfinished_path = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"

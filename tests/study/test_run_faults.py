@@ -5,6 +5,7 @@ import os
 
 import pytest
 
+from contactstudy import checks
 from contactstudy.cli import main
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.study import Study, StudyFileError, open_study, run_study
@@ -44,6 +45,16 @@ def test_deep_nesting_raises(tmp_path):
         profile = {"kind": "sum", "terms": [profile]}
     with pytest.raises(InvalidInputError, match="nested less deeply"):
         case_id({"profile": profile})
+
+
+def test_text_above_largest_size_raises(study, tmp_path, monkeypatch):
+    path = tmp_path / "s.toml"
+    path.write_text(format_toml(study))
+    run(study, tmp_path)
+    monkeypatch.setattr(checks, "MAX_TEXT", 100)
+    for read in (lambda: Study.from_toml(path), lambda: open_study(tmp_path)):
+        with pytest.raises(StudyFileError, match="more than"):
+            read()
 
 
 def test_too_many_points_raise():
