@@ -32,6 +32,7 @@ from contactstudy.kernels.load import Load
 # Shortest and longest distances of `FilmResolution` over the inlet length. A longer inlet thickens the film of a line
 # contact by 0.1 % at M = 20, by 0.2 % at M = 1000; an outlet of 0.25 suffices. Accuracy.
 WINDOW_RANGES = {"inlet": (25.0, 100.0), "outlet": (1.0, 100.0)}
+THICK_FILM_RATIO = 3.0  # film over the central film from which on a first guess is consistent with its pressure. Speed.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -352,24 +353,22 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells]:
     start, stop = (end / film.half_width for end in film.case.contact_range)
     min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
-    narrow_columns = [(end, min_dx) for end in film.contact_ends]
-    narrow_columns += [(position, max(min_dx, column_scale * width)) for position, width in level.closures]
-    max_width = min(resolution.widest_column, 0.2 * (stop - start))
+    closures = [(position, max(min_dx, column_scale * width)) for position, width in level.closures]
+    narrow_columns = [(end, min_dx) for end in film.contact_ends] + closures
 
     def column_width(x: float) -> float:
         widths = (width + growth * max(abs(x - position) - 2 * width, 0.0) for position, width in narrow_columns)
-        return float(min(max_width, *widths))
+        return float(min(resolution.widest_column, 0.2 * (stop - start), *widths))
 
     x_edges = graded_edges(start, stop, column_width)
     delta, half_width = level.inlet_length, film.contact_half_width
-    y_start = -half_width - resolution.inlet * delta
-    if film.inlet is not None:
-        y_start = max(y_start, -film.inlet / film.half_width)
+    meniscus = np.inf if film.inlet is None else film.inlet / film.half_width
+    y_start = -min(half_width + resolution.inlet * delta, meniscus)
     y_stop = half_width + resolution.outlet * delta
     min_cell = min(resolution.finest * delta, resolution.finest_share) * scale
     # 16 times a length of fast transforms, so that cells can merge in powers of two.
-    cell_count = 16 * int(next_fast_len(int(np.ceil((y_stop - y_start) / min_cell / 16)), real=True))
-    cell_count = min(cell_count, resolution.most_cells)
+    fast_length = int(next_fast_len(int(np.ceil((y_stop - y_start) / min_cell / 16)), real=True))
+    cell_count = min(16 * fast_length, resolution.most_cells)
     step = (y_stop - y_start) / cell_count
 
     def max_cell_count(first_cell: float, stop_cell: float) -> float:
@@ -463,15 +462,18 @@ def continue_solution(film: FilmCase, level_film: FilmOnCells, settings: FilmSet
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
     """Return a guess: the film of other cells, interpolated between the cells' centres."""
-    start_cells, cells = start.problem.cells, problem.cells
-    state = start.solution.state
+    start_cells, cells, state = start.problem.cells, problem.cells, start.solution.state
     # The film rises by powers of ten from column to column at the contact's ends: its logarithm is interpolated.
     pressure, distance, log_film = (
         _interpolate_field(values, start_cells.x, start_cells.y, cells)
         for values in (state.pressure, state.distance, np.log(start.solution.film))
     )
     distance = problem.solve_distance(np.exp(log_film), distance)
-    return problem.create_state(np.maximum(pressure, 0.0), state.motion, distance)
+    guess = problem.create_state(np.maximum(pressure, 0.0), state.motion, distance)
+    # A thick film hardly affects the pressure: its distance follows from the pressure instead of the other cells.
+    is_thick = np.minimum(distance / THICK_FILM_RATIO, distance - guess.mismatch) > problem.central_film
+    correction = np.where(is_thick, guess.mismatch, 0.0)
+    return guess._replace(distance=distance - correction, mismatch=guess.mismatch - correction)
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:

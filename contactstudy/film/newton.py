@@ -34,7 +34,7 @@ class FilmSettings:
     steps : tuple of float
         Pseudo-time steps, in a / um, before the steady state. Speed.
     newton_steps : int
-        Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed.
+        Bound on the Newton steps of one pseudo-time step; the steady state may take five times as many. Speed.
     linear_tolerance : float
         Tolerance of the linear systems. Speed.
     linear_steps : int
@@ -244,7 +244,7 @@ class _Iteration:
     def converge(self, state: FilmState, step: float, mass: FloatArray | None) -> FilmSolution:
         """Iterate to a pseudo-time step, or, without `mass`, to the steady state; raise on failure."""
         settings = self.settings
-        max_steps = settings.newton_steps if mass is not None else 3 * settings.newton_steps
+        max_steps = settings.newton_steps if mass is not None else 5 * settings.newton_steps
         elimination, norm, min_film_ratio = None, np.inf, np.inf
         for _ in range(max_steps):
             equations = self.linearise(state, step, mass)

@@ -86,6 +86,23 @@ def test_nan_guess_is_replaced_by_dry_contact(monkeypatch):
     assert second_film.solution.film == pytest.approx(first_film.solution.film, rel=1e-9)
 
 
+def test_guess_of_thick_film_is_consistent_with_its_pressure():
+    """Thin films are interpolated: their distance differs from the distance that pressure and motion cause."""
+    film = create_film_case(make_short_case(), resolution=COARSE_RESOLUTION)
+    coarse_film = levels.film_on_level(film, film.coarsest_level, SETTINGS)
+    fine_level = film.coarsest_level.refined("columns", film, [(0.5, 0.1), (5.5, 0.1)])
+    problem = levels.film_on_level(film, fine_level, SETTINGS).problem
+    guess = levels._transfer_state(coarse_film, problem)
+    caused_distance = guess.distance - guess.mismatch
+    rigid_height = (guess.motion @ problem.motions).reshape(problem.gap.shape)
+    assert caused_distance == pytest.approx(problem.gap + problem.displace(guess.pressure) + rigid_height, abs=1e-12)
+    is_thick = guess.distance > 4 * problem.central_film
+    is_thin = guess.distance < 2 * problem.central_film
+    assert is_thick.mean() > 0.3
+    assert np.abs(guess.mismatch[is_thick]).max() <= 1e-12
+    assert np.abs(guess.mismatch[is_thin]).max() > 1e-3 * problem.central_film
+
+
 def test_refined_columns_are_narrow_at_each_minimum():
     """Columns of 0.01 a at the flat least film of a tilted roller (random seed 1056) stopped Newton."""
     film = create_film_case(make_short_case(), resolution=COARSE_RESOLUTION)
