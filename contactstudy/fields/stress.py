@@ -59,7 +59,8 @@ def stress_field(
         the contact pressure of `solve`. Its smooth form is continuous and falls to zero inside the last cells; a load
         is this form times a ratio, linear between centres and faces, and the cells keep the sum of their forces. For a
         given argument the field is linear in the loads. The error under a Hertz pressure at a third of a cell below
-        the top is 7e-2 of the largest pressure with uniform cells, 1.5e-3 with the shape.
+        the top is 7e-2 of the largest pressure with uniform cells, 1.5e-3 with the shape. At the corners of uniform
+        cells on the top `tau_xy` is unbounded: a position there yields an arbitrary finite value, a centre does not.
 
     Returns
     -------
