@@ -81,9 +81,9 @@ def test_workers_solve_user_profile(tmp_path: Path) -> None:
     assert run_study(study, tmp_path, workers=1, progress=False).counts == {"ok": 3}
     dataset = open_study(tmp_path)
     assert dataset.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
-    assert dataset.profile.values[0].startswith("Local ")
+    assert dataset.profile.values[0].startswith("LocalWedge ")
     first_case = load_case(tmp_path, study.plan()[0].id)
-    assert '"class": "Local", "values": {"slope": 0.0001}' in first_case.attrs["contactstudy_case"]
+    assert '"class": "LocalWedge", "values": {"slope": 0.0001}' in first_case.attrs["contactstudy_case"]
     drop = solved_case(first_case).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
     np.testing.assert_allclose(drop, [1e-8, 2e-8])
 

@@ -167,8 +167,10 @@ def scale_pressure(factor: float) -> Callable[[Patch], None]:
     """Change of the pressure of passing line contacts, with an unchanged nominal pressure."""
 
     def patch_pressure(patch: Patch) -> None:
-        original = passes.from_top
-        patch.setattr(passes, "from_top", lambda friction: (factor * original(friction)).assign(hertz_max_pressure=1.0))
+        original = passes.contact_from_top
+        patch.setattr(
+            passes, "contact_from_top", lambda friction: (factor * original(friction)).assign(hertz_max_pressure=1.0)
+        )
 
     return patch_pressure
 
