@@ -77,30 +77,14 @@ def compute_wedge_slope(angle: float, s: float) -> float:
 
     def compute_fundamental_solutions(t: float) -> FloatArray:
         """F, F' and F'' of the four fundamental solutions."""
-        upper_exponent, lower_exponent = s + 1, s - 1
-        wedge_equations = [
-            (
-                np.cos(upper_exponent * t),
-                -upper_exponent * np.sin(upper_exponent * t),
-                -(upper_exponent**2) * np.cos(upper_exponent * t),
-            ),
-            (
-                np.sin(upper_exponent * t),
-                upper_exponent * np.cos(upper_exponent * t),
-                -(upper_exponent**2) * np.sin(upper_exponent * t),
-            ),
-            (
-                np.cos(lower_exponent * t),
-                -lower_exponent * np.sin(lower_exponent * t),
-                -(lower_exponent**2) * np.cos(lower_exponent * t),
-            ),
-            (
-                np.sin(lower_exponent * t),
-                lower_exponent * np.cos(lower_exponent * t),
-                -(lower_exponent**2) * np.sin(lower_exponent * t),
-            ),
-        ]
-        return np.array(wedge_equations).T
+        solutions = []
+        for exponent in (s + 1, s - 1):
+            cosine, sine = np.cos(exponent * t), np.sin(exponent * t)
+            solutions += [
+                (cosine, -exponent * sine, -(exponent**2) * cosine),
+                (sine, exponent * cosine, -(exponent**2) * sine),
+            ]
+        return np.array(solutions).T
 
     loaded_face, free_face = compute_fundamental_solutions(0.0), compute_fundamental_solutions(angle)
     # Stresses divided by r**(s - 1): s (s + 1) F across the radius, shear -s F'.

@@ -18,7 +18,6 @@ from contactstudy.contact.refinement.refinement import (
     END_COLUMN_WIDTH,
     MAX_COLUMNS,
     MAX_WIDTH_RATIO,
-    MIN_CHORD_WIDTH,
     MIN_END_COLUMN,
     AxialShape,
     ColumnPressure,
@@ -39,7 +38,7 @@ Y = (np.arange(16) - 7.5) / 8
 def make_shape(
     length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), is_elastic: bool = False
 ) -> AxialShape:
-    exponents = [np.nan if is_elastic or refined_contact == 0 else RIGID for refined_contact in face_beyond]
+    exponents = [np.nan if is_elastic or face_length == 0 else RIGID for face_length in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
@@ -99,34 +98,6 @@ def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
     assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
     assert np.allclose(widths, widths[::-1])
     assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= MAX_WIDTH_RATIO)
-
-
-def test_first_columns_split_at_curvature() -> None:
-    fillet_radius, fillet_start = 3.0, 17.0
-    bent_shape = AxialShape(
-        start=0.0,
-        stop=LENGTH,
-        half_width=HALF_WIDTH,
-        depth=0.05,
-        height=lambda x: 0.5 * np.maximum(x - fillet_start, 0) ** 2 / fillet_radius,
-        face_beyond=(0.0, 0.0),
-    )
-    widths = np.diff(first_edges(bent_shape))
-    baseline = np.diff(first_edges(make_shape()))
-    assert widths.size > baseline.size
-    assert widths[-len(baseline) // 3 :].max() < baseline.max()
-
-
-@pytest.mark.parametrize("crest_x", [2.2, 9.1, 17.7])
-def test_first_columns_resolve_crest_between_samples(crest_x: float) -> None:
-    """The crest is narrower than the distance of two samples: only the nodes contain it."""
-    nodes = np.sort(np.append(np.linspace(0.0, LENGTH, 201), crest_x + np.array([-4e-4, 1e-4, 5e-4])))
-    heights = np.where(np.abs(nodes - crest_x) < 2e-4, 0.0, 0.02)
-    ridge_shape = replace(make_shape(), height=lambda x: np.interp(x, nodes, heights), nodes=nodes)
-    edges = first_edges(ridge_shape)
-    widths = np.diff(edges)
-    assert widths[np.searchsorted(edges, crest_x) - 1] <= MIN_CHORD_WIDTH * HALF_WIDTH
-    assert edges.size < 1.5 * first_edges(make_shape()).size
 
 
 def test_open_column_with_step_at_end_is_not_overlooked() -> None:

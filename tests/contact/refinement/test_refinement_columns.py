@@ -169,3 +169,24 @@ def test_corner_moves_neighbouring_edges_only(corner: float) -> None:
         min(np.diff(edges)[column - 1 : column + 1])
         >= 0.2 * np.diff(uncornered_edges)[np.searchsorted(uncornered_edges, corner) - 1]
     )
+
+
+def test_first_columns_split_at_curvature() -> None:
+    fillet_radius, fillet_start = 3.0, 17.0
+    bent_shape = make_axial_shape(lambda x: 0.5 * np.maximum(x - fillet_start, 0) ** 2 / fillet_radius)
+    widths = np.diff(first_edges(bent_shape))
+    baseline = np.diff(first_edges(make_axial_shape(np.zeros_like)))
+    assert widths.size > baseline.size
+    assert widths[-len(baseline) // 3 :].max() < baseline.max()
+
+
+@pytest.mark.parametrize("crest_x", [2.2, 9.1, 17.7])
+def test_first_columns_resolve_crest_between_samples(crest_x: float) -> None:
+    """The crest is narrower than the distance of two samples: only the nodes contain it."""
+    nodes = np.sort(np.append(np.linspace(0.0, LENGTH, 201), crest_x + np.array([-4e-4, 1e-4, 5e-4])))
+    heights = np.where(np.abs(nodes - crest_x) < 2e-4, 0.0, 0.02)
+    ridge_shape = replace(make_axial_shape(lambda x: np.interp(x, nodes, heights)), nodes=nodes)
+    edges = first_edges(ridge_shape)
+    widths = np.diff(edges)
+    assert widths[np.searchsorted(edges, crest_x) - 1] <= MIN_CHORD_WIDTH
+    assert edges.size < 1.5 * first_edges(make_axial_shape(np.zeros_like)).size
